@@ -1,0 +1,21 @@
+"""A frame: what a source gives and the pipeline takes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frame:
+    """One picture of a stream.
+
+    image: uint8 (height, width, 3), BGR, in the source's own pixels.
+    index: position in the source, 0-based.
+    time_s: seconds since the start of the source, by the container's time stamp; for a folder of
+        frames, index divided by the frame rate that the user names.
+    """
+
+    image: NDArray[np.uint8]
+    index: int
+    time_s: float

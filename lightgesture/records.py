@@ -1,0 +1,71 @@
+"""The records of frames and summaries; words, instructions and the rest are the events of `fsm`.
+
+Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the
+documented order.
+"""
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from lightgesture.fsm import Event
+
+Box = tuple[int, int, int, int]
+"""x, y, width, height in pixels of the source frame."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hand:
+    """One hand as it was read.
+
+    side: "left" or "right", the diver's own. token: one of the ten, or None with a `reason`
+    ("low_confidence", "unknown_shape", "partial", "occluded"). confidence: 0 to 1, calibrated.
+    box: outline of the hand without the forearm. track: number of the track, None in single pictures.
+    """
+
+    side: str
+    token: str | None
+    confidence: float
+    box: Box
+    track: int | None
+    reason: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameRecord:
+    """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture."""
+
+    type: str = field(default="frame", init=False)
+    source: str | None
+    frame: int | None
+    time_s: float | None
+    hands: tuple[Hand, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        record = asdict(self)
+        record["hands"] = [{**hand, "box": list(hand["box"])} for hand in record["hands"]]
+        return record
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SummaryRecord:
+    """Totals of one source.
+
+    frames: number processed. seconds: time of the last frame. ms_per_frame: "median" and "p95" of
+    the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
+    """
+
+    type: str = field(default="summary", init=False)
+    source: str | None
+    frames: int
+    seconds: float
+    instructions: int
+    rejected: int
+    status: str
+    ms_per_frame: dict[str, float]
+    stages_ms: dict[str, float]
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+Record = FrameRecord | SummaryRecord | Event

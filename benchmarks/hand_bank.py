@@ -1,0 +1,162 @@
+"""The bank of hand contours of the paper's region selection: Hu moments and the class they stand for.
+
+The bank is built in memory from `hands/train` whenever it is needed and never stored. Contours come from the
+source `massey`, whose hands are cut out on black (Barczak et al., "A new 2D static hand gesture colour image
+dataset for ASL gestures", 2011). It has no thumb gestures: their contours are drawn from the landmarks of
+other sources.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.benchmarks.datasets import read_image, read_landmarks, read_table
+
+Moments = NDArray[np.float64]
+Contour = NDArray[np.int32]
+
+HU_FLOOR = 1e-5
+"""Hu moments below this are left out of the distance, as `cv2.matchShapes` does."""
+
+FINGERS = ((0, 1, 2, 3, 4), (0, 5, 6, 7, 8), (0, 9, 10, 11, 12), (0, 13, 14, 15, 16), (0, 17, 18, 19, 20))
+"""Landmarks along each finger, from the wrist to the tip."""
+
+PALM = (0, 1, 5, 9, 13, 17)
+"""Landmarks round the palm."""
+
+
+@dataclass(frozen=True, slots=True)
+class BankSettings:
+    """How the bank is made.
+
+    cut_out_set: source whose pictures are black around the hand.
+    black_level: grey level, 0 to 255, above which a pixel of these belongs to the hand; higher eats shadows.
+    per_class: contours a class; more cost time and gain little, neighbours being of the same five subjects.
+    finger_width: width of a drawn finger as a share of the longer side of the landmark box.
+    accepted_share: share of the bank's hands that must lie within the accepted distance of another
+        subject's; higher accepts more shapes that are no hands.
+    """
+
+    cut_out_set: str = "massey"
+    black_level: int = 16
+    per_class: int = 30
+    finger_width: float = 0.18
+    accepted_share: float = 0.95
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandBank:
+    """Hu moments of hand contours.
+
+    moments: float64 (n, 7), seen as a left hand. tokens: the class of each.
+    accepted_distance: above it a contour is no hand.
+    """
+
+    moments: Moments
+    tokens: tuple[str, ...]
+    accepted_distance: float
+
+    def nearest(self, contour: Contour, mirrored: bool = False) -> tuple[str, float]:
+        """Class of the nearest contour and its distance; `mirrored` compares the contour's mirror image."""
+        distances = hu_distances(hu_moments(contour, mirrored), self.moments)
+        index = int(np.argmin(distances))
+        return self.tokens[index], float(distances[index])
+
+
+def hu_moments(contour: Contour, mirrored: bool = False) -> Moments:
+    """The seven Hu moments of a contour, float64 (7,) (Hu, IRE Trans. Information Theory 8, 1962).
+
+    A mirror image changes the sign of the seventh alone.
+    """
+    moments = np.asarray(cv2.HuMoments(cv2.moments(contour)), dtype=np.float64).reshape(7)
+    if mirrored:
+        moments[6] = -moments[6]
+    return moments
+
+
+def hu_distances(moments: Moments, bank: Moments) -> Moments:
+    """Distance of Hu moments (7,) to each row of (n, 7), float64 (n,): `cv2.CONTOURS_MATCH_I1`.
+
+    The sum over i of |1/m_i - 1/b_i| with m_i = sign(h_i) log10 |h_i|, moments below `HU_FLOOR` left out.
+    """
+    valid = (np.abs(moments) > HU_FLOOR) & (np.abs(bank) > HU_FLOOR)
+    difference = np.abs(_reciprocal_log(bank) - _reciprocal_log(moments))
+    return np.asarray(np.where(valid, difference, 0.0).sum(axis=1))
+
+
+def _reciprocal_log(moments: Moments) -> Moments:
+    magnitude = np.maximum(np.abs(moments), HU_FLOOR)
+    return np.asarray(1.0 / (np.sign(moments + (moments == 0)) * np.log10(magnitude)))
+
+
+def largest_contour(mask: NDArray[np.uint8]) -> Contour | None:
+    """Outer contour of the largest region of a mask, int32 (n, 2), None for an empty mask."""
+    contours, _ = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    if not contours:
+        return None
+    return np.asarray(max(contours, key=cv2.contourArea), dtype=np.int32).reshape(-1, 2)
+
+
+def draw_hand(landmarks: NDArray[np.float32], finger_width: float) -> NDArray[np.uint8]:
+    """Mask of a hand, 255 inside, drawn as thick fingers and a filled palm from 21 landmarks (21, 2)."""
+    low, high = landmarks.min(axis=0), landmarks.max(axis=0)
+    width = max(1, round(finger_width * float((high - low).max())))
+    points = np.rint(landmarks - low + 2 * width).astype(np.int32)
+    columns, rows = (np.ceil(high - low).astype(int) + 4 * width).tolist()
+    mask = np.zeros((rows, columns), np.uint8)
+    for finger in FINGERS:
+        cv2.polylines(mask, [points[list(finger)]], False, 255, width)
+    cv2.fillPoly(mask, [points[list(PALM)]], 255)
+    return mask
+
+
+def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
+    """Build the bank from `hands/train` of a data folder."""
+    settings = settings or BankSettings()
+    rows = [row for row in read_table(data, "hands/train.csv") if row["token"] != "none"]
+    cut_out = {row["token"] for row in rows if row["set"] == settings.cut_out_set}
+    moments: list[Moments] = []
+    tokens: list[str] = []
+    subjects: list[str] = []
+    for token in sorted({row["token"] for row in rows}):
+        is_cut_out = token in cut_out
+        members = [row for row in rows if row["token"] == token]
+        if is_cut_out:
+            members = [row for row in members if row["set"] == settings.cut_out_set]
+        for row in _evenly(members, settings.per_class):
+            contour = _cut_out_contour(data, row, settings) if is_cut_out else _drawn_contour(row, settings)
+            if contour is not None:
+                moments.append(hu_moments(contour))
+                tokens.append(token)
+                subjects.append(f"{row['set']} {row['subject']}")
+    bank = np.stack(moments)
+    return HandBank(bank, tuple(tokens), _accepted_distance(bank, subjects, settings.accepted_share))
+
+
+def _cut_out_contour(data: Path, row: dict[str, str], settings: BankSettings) -> Contour | None:
+    image = read_image(data / "hands" / row["path"])
+    return largest_contour((image.max(axis=2) > settings.black_level).astype(np.uint8))
+
+
+def _drawn_contour(row: dict[str, str], settings: BankSettings) -> Contour | None:
+    return largest_contour(draw_hand(read_landmarks(row), settings.finger_width))
+
+
+def _evenly(rows: Sequence[dict[str, str]], count: int) -> list[dict[str, str]]:
+    count = min(count, len(rows))
+    return [rows[index * len(rows) // count] for index in range(count)]
+
+
+def _accepted_distance(bank: Moments, subjects: Sequence[str], accepted_share: float) -> float:
+    """Distance within which `accepted_share` of the contours find one of another subject."""
+    names = np.asarray(subjects)
+    nearest = []
+    for moments, subject in zip(bank, subjects, strict=True):
+        others = bank[names != subject]
+        if len(others):
+            nearest.append(hu_distances(moments, others).min())
+    return float(np.quantile(nearest, accepted_share)) if nearest else float("inf")

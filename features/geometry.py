@@ -1,0 +1,32 @@
+"""Arithmetic on boxes; boxes are float or int arrays (n, 4) of x, y, width, height."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.types import Box
+
+
+def pairwise_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float64]:
+    """Intersection over union of every box of `first` (n, 4) with every one of `second` (m, 4)."""
+    a = np.asarray(first, np.float64).reshape(-1, 4)[:, None, :]
+    b = np.asarray(second, np.float64).reshape(-1, 4)[None, :, :]
+    low = np.maximum(a[..., :2], b[..., :2])
+    high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
+    overlap = np.clip(high - low, 0.0, None).prod(axis=-1)
+    union = a[..., 2:].prod(axis=-1) + b[..., 2:].prod(axis=-1) - overlap
+    return overlap / np.maximum(union, 1e-9)  # type: ignore[no-any-return]
+
+
+def scale_box(box: Box, scale: tuple[float, float], size: tuple[int, int]) -> Box:
+    """A box of the working picture in source pixels, kept inside `size` (width, height)."""
+    x0, y0 = round(box[0] * scale[0]), round(box[1] * scale[1])
+    x1, y1 = round((box[0] + box[2]) * scale[0]), round((box[1] + box[3]) * scale[1])
+    x0, y0 = min(max(x0, 0), size[0] - 1), min(max(y0, 0), size[1] - 1)
+    return x0, y0, max(min(x1, size[0]) - x0, 1), max(min(y1, size[1]) - y0, 1)
+
+
+def mirror_box(box: Box, width: int) -> Box:
+    """The box in the picture flipped left to right; `width` of the picture in pixels."""
+    return width - box[0] - box[2], box[1], box[2], box[3]

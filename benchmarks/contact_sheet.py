@@ -26,8 +26,11 @@ MAX_TILES = 60
 GREEN = (60, 220, 60)
 RED = (60, 60, 255)
 WHITE = (255, 255, 255)
-FONT_SCALE = 0.5
-"""About 11 pixels high."""
+FONT_SCALE = 0.45
+"""About 10 pixels high."""
+
+CAPTION = 40
+"""Characters of a caption that fit into a tile; its end tells more than its beginning."""
 
 
 def draw_tile(image: Image, labels: Sequence[Label], readings: Sequence[Reading], caption: str) -> Image:
@@ -44,8 +47,13 @@ def draw_tile(image: Image, labels: Sequence[Label], readings: Sequence[Reading]
     for reading in readings:
         text = f"{(reading.side or '?')[0]}:{reading.token or '-'}"
         _draw_box(tile, reading.box, scale, (left, top), RED, text, at_top=False)
-    cv2.putText(tile, caption[-44:], (4, 12), cv2.FONT_HERSHEY_SIMPLEX, FONT_SCALE * 0.8, WHITE, 1, cv2.LINE_AA)
+    write(tile, caption[-CAPTION:], (4, 12), WHITE)
     return tile
+
+
+def write(image: Image, text: str, place: tuple[int, int], colour: tuple[int, int, int]) -> None:
+    """Write into the picture itself; place is the lower left corner."""
+    cv2.putText(image, text, place, cv2.FONT_HERSHEY_SIMPLEX, FONT_SCALE, colour, 1, cv2.LINE_AA)
 
 
 def _draw_box(
@@ -61,7 +69,7 @@ def _draw_box(
     right, bottom = x + round(box[2] * scale), y + round(box[3] * scale)
     cv2.rectangle(tile, (x, y), (right, bottom), colour, 1)
     place = (x, max(24, y - 4)) if at_top else (x, min(TILE_HEIGHT - 3, bottom + 13))
-    cv2.putText(tile, text, place, cv2.FONT_HERSHEY_SIMPLEX, FONT_SCALE, colour, 1, cv2.LINE_AA)
+    write(tile, text, place, colour)
 
 
 def choose_evenly(count: int, limit: int = MAX_TILES) -> list[int]:

@@ -60,7 +60,7 @@ def find_data(folder: str | Path | None = None) -> Path:
     if folder is not None:
         if Path(folder).is_dir():
             return Path(folder)
-        raise InputError(f"{folder}: no such folder; give the folder that holds hands/ and frames/ with --data")
+        raise InputError(f"{folder}: no such folder; --data must name the one that holds hands/ and frames/")
     checkout = Path(__file__).resolve().parent.parent
     places = [checkout.parent / DATA_FOLDER, Path.cwd().parent / DATA_FOLDER]
     for place in places:
@@ -77,7 +77,9 @@ def read_table(data: Path, name: str) -> list[dict[str, str]]:
             rows = list(csv.DictReader(stream))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(f"{path}: cannot be read ({reason}); --data must name a folder that holds it") from error
+        raise InputError(
+            f"{path}: cannot be read ({reason}); --data must name a complete data folder"
+        ) from error
     if not rows:
         raise InputError(f"{path}: holds no rows; --data must name a complete data folder")
     return rows
@@ -141,7 +143,9 @@ def read_webcam(data: Path, split: str = "val") -> list[Sample]:
 
 def read_frames(data: Path) -> list[Sample]:
     """The frames labelled by hand, sequences in their order."""
-    samples = [_frame_sample(data, file, hands) for file, hands in _by_file(read_table(data, "frames/labels.csv"))]
+    samples = [
+        _frame_sample(data, file, hands) for file, hands in _by_file(read_table(data, "frames/labels.csv"))
+    ]
     return sorted(samples, key=lambda sample: (sample.group, sample.order or 0))
 
 

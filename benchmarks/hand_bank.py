@@ -34,6 +34,7 @@ class BankSettings:
     """How the bank is made.
 
     cut_out_set: source whose pictures are black around the hand.
+    left_out: sources that show the people of scored frames (`emre_drone`: those of `frames/drone`).
     black_level: grey level, 0 to 255, above which a pixel of these belongs to the hand; higher eats shadows.
     per_class: contours a class; more cost time and gain little, neighbours being of the same five subjects.
     finger_width: width of a drawn finger as a share of the longer side of the landmark box.
@@ -42,6 +43,7 @@ class BankSettings:
     """
 
     cut_out_set: str = "massey"
+    left_out: frozenset[str] = frozenset({"emre_drone"})
     black_level: int = 16
     per_class: int = 30
     finger_width: float = 0.18
@@ -117,7 +119,11 @@ def draw_hand(landmarks: NDArray[np.float32], finger_width: float) -> NDArray[np
 def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
     """Build the bank from `hands/train` of a data folder."""
     settings = settings or BankSettings()
-    rows = [row for row in read_table(data, "hands/train.csv") if row["token"] != "none"]
+    rows = [
+        row
+        for row in read_table(data, "hands/train.csv")
+        if row["token"] != "none" and row["set"] not in settings.left_out
+    ]
     cut_out = {row["token"] for row in rows if row["set"] == settings.cut_out_set}
     moments: list[Moments] = []
     tokens: list[str] = []

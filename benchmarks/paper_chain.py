@@ -90,12 +90,15 @@ class PaperChain:
         chosen: dict[str, PaperHand] = {}
         for side, memory in self._memory.items():
             taken = {hand.box for hand in chosen.values()}
-            inside = [
-                contour for contour in contours if within_gate(bounding_box(contour), memory.box, self._settings)
+            hands = [
+                self._read(contour, side)
+                for contour in contours
+                if bounding_box(contour) not in taken
+                and within_gate(bounding_box(contour), memory.box, self._settings)
             ]
-            hands = [hand for hand in self._matches(inside, side) if hand.box not in taken]
-            if hands:
-                chosen[side] = min(hands, key=lambda hand: hand.distance)
+            accepted = [hand for hand in hands if hand.distance <= self._bank.accepted_distance]
+            if accepted:
+                chosen[side] = min(accepted, key=lambda hand: hand.distance)
         return chosen
 
     def _search(
@@ -104,27 +107,21 @@ class PaperChain:
         """Fill the sides without memory with the contours nearest to the bank."""
         taken = {hand.box for hand in chosen.values()}
         free = [side for side in SIDES_BY_PLACE if side not in chosen and side not in self._memory]
-        candidates = [hand for hand in self._matches(contours, "left") if hand.box not in taken]
-        nearest = sorted(candidates, key=lambda hand: hand.distance)[: len(free)]
-        ordered = sorted(nearest, key=lambda hand: hand.box[0] + hand.box[2] / 2)
-        if len(ordered) == 1 and len(free) == 2:
-            box = ordered[0].box
-            free = ["right" if box[0] + box[2] / 2 < width / 2 else "left"]
-        sided = [
-            hand
-            for side, place in zip(free, ordered, strict=False)
-            for hand in self._matches(contours, side)
-            if hand.box == place.box
-        ]
-        return {**chosen, **{hand.side: hand for hand in sided}}
+        ranked = sorted(
+            (self._bank.nearest(contour)[1], index)
+            for index, contour in enumerate(contours)
+            if bounding_box(contour) not in taken
+        )
+        nearest = [contours[index] for distance, index in ranked if distance <= self._bank.accepted_distance]
+        placed = sorted(nearest[: len(free)], key=middle)
+        if len(placed) == 1 and len(free) == 2:
+            free = ["right" if middle(placed[0]) < width / 2 else "left"]
+        found = {side: self._read(contour, side) for side, contour in zip(free, placed, strict=False)}
+        return {**chosen, **found}
 
-    def _matches(self, contours: list[Contour], side: str) -> list[PaperHand]:
-        hands = []
-        for contour in contours:
-            token, distance = self._bank.nearest(contour, mirrored=side == "right")
-            if distance <= self._bank.accepted_distance:
-                hands.append(PaperHand(bounding_box(contour), side, token, distance))
-        return hands
+    def _read(self, contour: Contour, side: str) -> PaperHand:
+        token, distance = self._bank.nearest(contour, mirrored=side == "right")
+        return PaperHand(bounding_box(contour), side, token, distance)
 
     def _remember(self, chosen: dict[str, PaperHand]) -> None:
         missed = {side: memory.missed + 1 for side, memory in self._memory.items() if side not in chosen}
@@ -158,6 +155,12 @@ def bounding_box(contour: Contour) -> Box:
     """Upright bounding box of a contour."""
     x, y, width, height = cv2.boundingRect(contour)
     return int(x), int(y), int(width), int(height)
+
+
+def middle(contour: Contour) -> float:
+    """Horizontal middle of a contour's bounding box, pixels."""
+    x, _, width, _ = bounding_box(contour)
+    return x + width / 2
 
 
 def within_gate(box: Box, last: Box, settings: PaperSettings) -> bool:

@@ -114,7 +114,9 @@ def match_boxes(
     return best
 
 
-def matched_readings(labels: Sequence[Label], readings: Sequence[Reading]) -> list[tuple[Reading | None, float]]:
+def matched_readings(
+    labels: Sequence[Label], readings: Sequence[Reading]
+) -> list[tuple[Reading | None, float]]:
     """For each label the reading on it, or None, and their IoU (0 without a reading)."""
     matches = match_boxes([reading.box for reading in readings], [label.box for label in labels])
     by_label = {column: (readings[row], overlap) for row, column, overlap in matches}
@@ -221,7 +223,8 @@ def wilson_interval(right: int, count: int, z: float = 1.96) -> tuple[float, flo
 def auroc(positive: Sequence[float], negative: Sequence[float]) -> float | None:
     """Area under the ROC curve: the share of (positive, negative) pairs in right order, ties counting half.
 
-    The Mann-Whitney statistic from average ranks (Hanley & McNeil, Radiology 1982). None when either is empty.
+    The Mann-Whitney statistic from average ranks (Hanley & McNeil, Radiology 1982). None when either is
+    empty.
     """
     if not positive or not negative:
         return None

@@ -1,0 +1,168 @@
+"""Accuracy of the classifier on given boxes and of the whole chain on real frames, over a data folder.
+
+`lightgesture evaluate` is the thin command in front of this module.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
+from lightgesture.benchmarks.datasets import (
+    Sample,
+    group_samples,
+    read_frames,
+    read_hands,
+    read_image,
+    read_negatives,
+    read_webcam,
+)
+from lightgesture.benchmarks.hand_bank import build_bank
+from lightgesture.benchmarks.hands import (
+    HandAnswer,
+    by_source_table,
+    by_token_table,
+    classify,
+    confusion_table,
+    summary_table,
+)
+from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, PipelineMethod
+from lightgesture.benchmarks.regions import (
+    Progress,
+    Run,
+    instructions_table,
+    negatives_table,
+    regions_table,
+    run_methods,
+    tokens_table,
+)
+from lightgesture.benchmarks.scorer import Label, Reading
+from lightgesture.benchmarks.tables import Table
+
+HANDS = "hands"
+REGIONS = "regions"
+TARGETS = (HANDS, REGIONS)
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A picture to look at: what was labelled, what was read, and where."""
+
+    path: Path
+    labels: tuple[Label, ...]
+    readings: tuple[Reading, ...]
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Tables of an evaluation, and the failures behind them by the name of their contact sheet."""
+
+    tables: tuple[Table, ...]
+    failures: dict[str, list[Failure]]
+
+
+def evaluate_hands(classifier: Classifier, model: str, data: Path, progress: Progress) -> Report:
+    """The classifier on `hands/val`, and on the labelled boxes of whole frames where the folder has them."""
+    answers = classify(classifier, progress(read_hands(data), "hands val"))
+    parts: list[tuple[str, Sequence[HandAnswer]]] = [
+        ("hands val", answers),
+        ("hands val, none doubtful", [answer for answer in answers if not answer.sample.doubtful]),
+    ]
+    for group, members in group_samples(_frame_samples(data)).items():
+        parts.append(
+            (f"{group}, boxes given", classify(classifier, progress(members, f"{group}, boxes given")))
+        )
+    tables = (
+        summary_table(parts, model),
+        by_token_table(answers, model),
+        by_source_table(answers, model),
+        confusion_table(answers, model),
+    )
+    failures = {_sheet_name(part): _hand_failures(part_answers) for part, part_answers in parts}
+    return Report(tables, failures)
+
+
+def evaluate_regions(methods: Sequence[Method], data: Path, progress: Progress) -> Report:
+    """Every method on the whole frames of the folder, and on those without a gesturing diver."""
+    positives = run_methods(methods, _frame_samples(data), progress)
+    has_negatives = (data / "negatives").is_dir()
+    negatives = run_methods(methods, read_negatives(data), progress) if has_negatives else []
+    tables = [
+        regions_table(positives),
+        tokens_table(positives, methods[0].name),
+        instructions_table(positives),
+        negatives_table(negatives),
+    ]
+    runs = [*positives, *negatives]
+    failures = {_sheet_name(run.method, run.group, run.mode): _run_failures(run) for run in runs}
+    return Report(tuple(table for table in tables if table.rows), failures)
+
+
+def available_targets(data: Path) -> list[str]:
+    """The targets for which a data folder holds pictures."""
+    folders = {HANDS: ("hands",), REGIONS: ("webcam", "frames")}
+    return [target for target in TARGETS if any((data / name).is_dir() for name in folders[target])]
+
+
+def default_methods(classifier: Classifier, model: str, data: Path) -> list[Method]:
+    """The pipeline; and, where the pictures for its bank are there, the paper's chain named in both ways."""
+    pipeline = PipelineMethod(model)
+    if not (data / "hands" / "train.csv").is_file():
+        return [pipeline]
+    bank = build_bank(data)
+    return [pipeline, PaperMethod(bank), PaperMethod(bank, classifier)]
+
+
+def save_failures(report: Report, folder: Path, warn: Callable[[str], None]) -> list[Path]:
+    """Draw a contact sheet per list of failures; returns the files written."""
+    written = []
+    for name, failures in report.failures.items():
+        chosen = choose_evenly(len(failures))
+        if len(chosen) < len(failures):
+            warn(f"{name}: shows {len(chosen)} of {len(failures)} failures")
+        if chosen:
+            path = folder / f"{name}.jpg"
+            save_sheet(path, [_tile(failures[index]) for index in chosen])
+            written.append(path)
+    return written
+
+
+def _frame_samples(data: Path) -> list[Sample]:
+    samples: list[Sample] = []
+    if (data / "webcam").is_dir():
+        samples += read_webcam(data)
+    if (data / "frames").is_dir():
+        samples += read_frames(data)
+    return samples
+
+
+def _tile(failure: Failure) -> Image:
+    return draw_tile(read_image(failure.path), failure.labels, failure.readings, failure.caption)
+
+
+def _hand_failures(answers: Iterable[HandAnswer]) -> list[Failure]:
+    return [
+        Failure(
+            answer.sample.path,
+            (answer.label,),
+            (Reading(answer.label.box, answer.label.side, answer.token),),
+            answer.sample.source,
+        )
+        for answer in answers
+        if answer.failed
+    ]
+
+
+def _run_failures(run: Run) -> list[Failure]:
+    return [
+        Failure(answer.sample.path, answer.sample.labels, answer.readings, answer.sample.path.name)
+        for answer in run.answers
+        if answer.failed
+    ]
+
+
+def _sheet_name(*words: str) -> str:
+    """A file name from words: lower case, runs of other characters than letters and digits become "_"."""
+    joined = "".join(character if character.isalnum() else " " for character in " ".join(words).lower())
+    return "_".join(joined.split())

@@ -1,0 +1,167 @@
+"""What is compared: the pipeline and the paper's chain behind one small interface."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.benchmarks.hand_bank import HandBank
+from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
+from lightgesture.benchmarks.scorer import Box, Reading
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
+from lightgesture.pipeline import Pipeline
+from lightgesture.records import FrameRecord, SummaryRecord
+
+Image = NDArray[np.uint8]
+
+
+class Classifier(Protocol):
+    """What reads hands in given boxes."""
+
+    @property
+    def classes(self) -> Sequence[str]:
+        """Names of the columns of `probabilities`."""
+
+    def probabilities(
+        self, image_bgr: Image, boxes: Sequence[Box], sides: Sequence[str]
+    ) -> NDArray[np.float32]:
+        """float32 (number of boxes, number of classes), rows that sum to one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decoded:
+    """What a sequence was decoded to: accepted words, texts of instructions, number of rejected sentences."""
+
+    words: tuple[str, ...]
+    instructions: tuple[str, ...]
+    rejected: int
+
+
+class Stream(Protocol):
+    """A method over the frames of one sequence, with its memory."""
+
+    def process(self, image: Image, time_s: float) -> list[Reading]:
+        """The hands of the next frame."""
+
+    def finish(self) -> Decoded:
+        """What all frames were decoded to."""
+
+
+class Method(Protocol):
+    """A way from pictures to hands."""
+
+    @property
+    def name(self) -> str:
+        """Name in the tables."""
+
+    def read(self, image: Image) -> list[Reading]:
+        """The hands of a single picture, without memory."""
+
+    def stream(self, hold: int | None) -> Stream:
+        """A fresh memory for a sequence; hold None is the default dwell."""
+
+
+class PipelineMethod:
+    """The product: `Pipeline` with the named model."""
+
+    def __init__(self, model: str) -> None:
+        self._model = model
+        self._single = Pipeline(model=model)
+
+    @property
+    def name(self) -> str:
+        return "lightgesture"
+
+    def read(self, image: Image) -> list[Reading]:
+        return _readings(self._single.recognize(image))
+
+    def stream(self, hold: int | None) -> Stream:
+        return _PipelineStream(Pipeline(model=self._model, hold=hold))
+
+
+class _PipelineStream:
+    def __init__(self, pipeline: Pipeline) -> None:
+        self._pipeline = pipeline
+        self._events: list[Event] = []
+        self._index = 0
+
+    def process(self, image: Image, time_s: float) -> list[Reading]:
+        readings: list[Reading] = []
+        for record in self._pipeline.process(image, time_s, self._index):
+            if isinstance(record, FrameRecord):
+                readings = _readings(record)
+            elif not isinstance(record, SummaryRecord):
+                self._events.append(record)
+        self._index += 1
+        return readings
+
+    def finish(self) -> Decoded:
+        for record in self._pipeline.finish():
+            if not isinstance(record, FrameRecord | SummaryRecord):
+                self._events.append(record)
+        return decoded(self._events)
+
+
+class PaperMethod:
+    """The paper's region selection; tokens from the nearest bank contour, or from a classifier if given."""
+
+    def __init__(self, bank: HandBank, classifier: Classifier | None = None) -> None:
+        self._bank = bank
+        self._classifier = classifier
+
+    @property
+    def name(self) -> str:
+        return "paper, bank" if self._classifier is None else "paper, classifier"
+
+    def read(self, image: Image) -> list[Reading]:
+        return self.name_hands(image, PaperChain(self._bank).process(image))
+
+    def stream(self, hold: int | None) -> Stream:
+        return _PaperStream(self, PaperChain(self._bank), hold)
+
+    def name_hands(self, image: Image, hands: Sequence[PaperHand]) -> list[Reading]:
+        """Readings of the chosen regions of a frame."""
+        if self._classifier is None or not hands:
+            return [Reading(hand.box, hand.side, hand.token) for hand in hands]
+        classifier = self._classifier
+        probabilities = classifier.probabilities(
+            image, [hand.box for hand in hands], [hand.side for hand in hands]
+        )
+        names = [classifier.classes[int(index)] for index in probabilities.argmax(axis=1)]
+        return [
+            Reading(hand.box, hand.side, None if name == "none" else name)
+            for hand, name in zip(hands, names, strict=True)
+        ]
+
+
+class _PaperStream:
+    def __init__(self, method: PaperMethod, chain: PaperChain, hold: int | None) -> None:
+        self._method = method
+        self._chain = chain
+        self._decoder = Decoder(load_grammar(), hold=hold)
+        self._events: list[Event] = []
+
+    def process(self, image: Image, time_s: float) -> list[Reading]:
+        readings = self._method.name_hands(image, self._chain.process(image))
+        tokens = {reading.side: reading.token for reading in readings}
+        self._events.extend(self._decoder.step(tokens.get("left"), tokens.get("right"), time_s))
+        return readings
+
+    def finish(self) -> Decoded:
+        self._events.extend(self._decoder.finish())
+        return decoded(self._events)
+
+
+def decoded(events: Sequence[Event]) -> Decoded:
+    """Words, instructions and rejections of a sequence's events."""
+    return Decoded(
+        words=tuple(event.word for event in events if isinstance(event, Word)),
+        instructions=tuple(event.text for event in events if isinstance(event, Instruction)),
+        rejected=sum(isinstance(event, Rejected) for event in events),
+    )
+
+
+def _readings(record: FrameRecord) -> list[Reading]:
+    return [Reading(hand.box, hand.side, hand.token) for hand in record.hands]

@@ -1,0 +1,144 @@
+"""What the decoder says: frozen records, one class per `type`, keys in the documented order.
+
+Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame
+and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own.
+"""
+
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal
+
+Pair = tuple[str, str]
+"""Tokens of the diver's left and right hand."""
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return list(value)
+    return value.to_dict() if isinstance(value, Growth) else value
+
+
+def _record(event: Any) -> dict[str, Any]:
+    return {item.name: _plain(getattr(event, item.name)) for item in fields(event)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Growth:
+    """A hold that is growing: `word` is what it would be read as (None: no word), `progress` 0 to 1."""
+
+    pair: Pair
+    word: str | None
+    progress: float
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Word:
+    """A sign was held long enough and has its place in the sentence.
+
+    state: the sentence so far, this word included; "idle" after the word that closes a sentence.
+    confidence: 0 to 1, mean over the hold of the lower of both hands' confidences.
+    """
+
+    type: Literal["word"] = field(default="word", init=False)
+    source: str | None
+    frame: int
+    time_s: float
+    pair: Pair
+    word: str
+    state: str
+    confidence: float
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instruction:
+    """A complete sentence, from its start word to its end word, that makes sense.
+
+    start_frame, start_time_s: first frame of the hold that accepted the start word.
+    text: the sentence with digits joined; words: the words as signed.
+    kind: the form's kind. action: first word after the start word. change: second one, if any.
+    duration_s: seconds. program, parameter: numbers that the grammar lists.
+    confidence: 0 to 1, the lowest of the words' confidences, for a sentence is as sure as its weakest
+    sign, however long it is.
+    """
+
+    type: Literal["instruction"] = field(default="instruction", init=False)
+    source: str | None
+    frame: int
+    time_s: float
+    start_frame: int
+    start_time_s: float
+    text: str
+    kind: str
+    action: str
+    duration_s: int | None
+    program: int | None
+    parameter: int | None
+    change: str | None
+    confidence: float
+    words: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rejected:
+    """A sentence was dropped.
+
+    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout" or "cancelled".
+    text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
+    """
+
+    type: Literal["rejected"] = field(default="rejected", init=False)
+    source: str | None
+    frame: int
+    time_s: float
+    reason: str
+    text: str
+    detail: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """For displays: `state` is "idle" or "collecting", `sentence` the words so far, `dwell` the hold."""
+
+    type: Literal["state"] = field(default="state", init=False)
+    source: str | None
+    frame: int
+    time_s: float
+    state: str
+    sentence: str
+    dwell: Growth | None
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Notice:
+    """A sign that changed nothing.
+
+    reason: "unknown_pair" (held, but no word: repeat it) or "out_of_order" (a word that opens no
+    sentence while none is open).
+    """
+
+    type: Literal["notice"] = field(default="notice", init=False)
+    source: str | None
+    frame: int
+    time_s: float
+    reason: str
+    detail: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return _record(self)
+
+
+Event = Word | Instruction | Rejected | State | Notice

@@ -1,0 +1,129 @@
+"""The command: tables as text and JSON, contact sheets, and clear refusals."""
+
+import argparse
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture import models
+from lightgesture.benchmarks import accuracy
+from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
+from lightgesture.commands import evaluate
+from lightgesture.errors import InputError, UsageError
+
+
+@pytest.fixture
+def command(monkeypatch, data, fake_classifier, fake_method):
+    """Runs `evaluate` on the drawn data folder with fakes for model and pipeline."""
+
+    def load(_name):
+        return fake_classifier
+
+    def make_pipeline(_model):
+        return fake_method
+
+    monkeypatch.setattr(models, "load_classifier", load)
+    monkeypatch.setattr(accuracy, "PipelineMethod", make_pipeline)
+    parser = argparse.ArgumentParser()
+    evaluate.add_arguments(parser)
+
+    def run(*arguments):
+        return evaluate.run(parser.parse_args(["--data", str(data), *arguments]))
+
+    return run
+
+
+def test_all_targets_as_text(command, capsys):
+    assert command() == 0
+    captured = capsys.readouterr()
+    titles = [block.splitlines()[0] for block in captured.out.split("\n\n")]
+    assert titles == [
+        "Hands in given boxes",
+        "Hands in given boxes, per token",
+        "Hands in given boxes, per source",
+        "Confusion of tokens (row: truth, column: read as)",
+        "Hands in whole frames",
+        "Tokens in single frames (fake)",
+        "Instructions of signed sequences",
+        "Frames without a gesturing diver: nothing may be found",
+    ]
+    assert captured.err == ""
+
+
+def test_json_rows_of_one_target(command, capsys):
+    assert command("regions", "--json") == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {row["table"] for row in rows} == {"regions", "regions_by_token", "instructions", "negatives"}
+    methods = {row["method"] for row in rows if row["table"] == "regions"}
+    assert methods == {"fake", "paper, bank", "paper, classifier"}
+
+
+def test_hands_are_scored_in_frames_too(command, capsys):
+    command("hands", "--json")
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    parts = [row["part"] for row in rows if row["table"] == "hands"]
+    assert parts == ["hands val", "hands val, none doubtful", "hover, boxes given", "tank, boxes given"]
+
+
+def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
+    out = tmp_path / "sheets"
+    command("--out", str(out))
+    names = {path.name for path in out.iterdir()}
+    assert {"hands_val.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
+    assert "fake_reef_1_single.jpg" not in names
+    assert not [name for name in names if not name.endswith(".jpg")]
+    sheet = cv2.imdecode(
+        np.frombuffer((out / "fake_hover_single.jpg").read_bytes(), np.uint8), cv2.IMREAD_COLOR
+    )
+    assert sheet.shape == (240, 1600, 3)
+    assert capsys.readouterr().err.count("wrote ") == len(names)
+
+
+def test_labels_are_green_and_readings_red(command, tmp_path):
+    command("regions", "--out", str(tmp_path))
+    content = np.frombuffer((tmp_path / "fake_tank_single.jpg").read_bytes(), np.uint8)
+    blue, green, red = (plane.astype(int) for plane in cv2.split(cv2.imdecode(content, cv2.IMREAD_COLOR)))
+    assert ((red > 150) & (green < 120) & (blue < 120)).any()
+    assert ((green > 150) & (red < 120) & (blue < 120)).any()
+
+
+def test_missing_pictures_for_a_target_are_named(command, data):
+    (data / "hands").rename(data / "away")
+    with pytest.raises(InputError, match="holds no pictures for hands"):
+        command("hands")
+
+
+def test_targets_that_the_folder_lacks_are_left_out(command, data, capsys):
+    (data / "frames").rename(data / "away")
+    command("--json")
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {row["table"].split("_")[0] for row in rows} == {"hands"}
+
+
+def test_paper_rows_need_the_training_pictures(command, data, capsys):
+    (data / "hands").rename(data / "away")
+    command("regions", "--json")
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {row["method"] for row in rows if row["table"] == "regions"} == {"fake"}
+
+
+def test_refused_model_is_a_usage_error(command, monkeypatch):
+    def refuse(name):
+        raise models.ModelError(f"{name}: not built yet")
+
+    monkeypatch.setattr(models, "load_classifier", refuse)
+    with pytest.raises(UsageError, match="cnn: not built yet"):
+        command("--model", "cnn")
+
+
+def test_long_lists_are_thinned_evenly():
+    assert choose_evenly(3, 5) == [0, 1, 2]
+    assert choose_evenly(10, 5) == [0, 2, 4, 6, 8]
+    assert len(choose_evenly(1000)) == MAX_TILES
+
+
+def test_sheet_without_tiles_is_not_written(tmp_path):
+    save_sheet(tmp_path / "none.jpg", [])
+    assert list(tmp_path.iterdir()) == []

@@ -23,11 +23,13 @@ class Classifier(Protocol):
     @property
     def classes(self) -> Sequence[str]:
         """Names of the columns of `probabilities`."""
+        ...
 
     def probabilities(
         self, image_bgr: Image, boxes: Sequence[Box], sides: Sequence[str]
     ) -> NDArray[np.float32]:
         """float32 (number of boxes, number of classes), rows that sum to one."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +46,11 @@ class Stream(Protocol):
 
     def process(self, image: Image, time_s: float) -> list[Reading]:
         """The hands of the next frame."""
+        ...
 
     def finish(self) -> Decoded:
         """What all frames were decoded to."""
+        ...
 
 
 class Method(Protocol):
@@ -55,12 +59,15 @@ class Method(Protocol):
     @property
     def name(self) -> str:
         """Name in the tables."""
+        ...
 
     def read(self, image: Image) -> list[Reading]:
         """The hands of a single picture, without memory."""
+        ...
 
     def stream(self, hold: int | None) -> Stream:
         """A fresh memory for a sequence; hold None is the default dwell."""
+        ...
 
 
 class PipelineMethod:

@@ -17,12 +17,15 @@ def build(document: dict[str, Any], file: str) -> Grammar:
         return grammar
     place, reason, remedy = grammar[0]
     more = f" (and {len(grammar) - 1} more)" if len(grammar) > 1 else ""
-    raise GrammarError(file, place, reason, remedy + more)
+    raise GrammarError.at(file, place, reason, remedy + more)
 
 
 def compile_grammar(content: GrammarFile, file: str) -> Grammar | list[Defect]:
     """The compiled grammar, or every defect that was found in the file's content."""
     defects: list[Defect] = []
+    for index, token in enumerate(content.tokens):
+        if token in content.tokens[:index]:
+            defects.append(Defect(key_path("tokens", index), f"'{token}' stands twice", "keep one"))
     idle_pairs = _read_pairs("idle_pairs", content.idle_pairs, content.tokens, defects)
     pairs = _read_pairs("pairs", content.pairs, content.tokens, defects)
     vocabulary = Vocabulary.of([*idle_pairs.values(), *pairs.values()], content.sentinels.join)

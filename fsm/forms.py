@@ -162,11 +162,10 @@ def next_places(form: Form, place: Place, vocabulary: Vocabulary) -> dict[str, P
     found: dict[str, Place] = {}
 
     def add(words: Iterable[str], target: Place) -> None:
-        for word in words:
+        for word in sorted(words):  # so that the same defect is named in every run
             if found.setdefault(word, target) != target:
-                raise FormError(
-                    f"'{word}' could be read in two ways", "put a word between the optional parts"
-                )
+                reason = f"'{word}' could be read in two ways in '{form.sentence}'"
+                raise FormError(reason, "put a word that is not optional in between")
 
     index = place.item
     if place.inside != "before":

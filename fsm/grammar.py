@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from lightgesture.fsm.events import Pair
 from lightgesture.fsm.forms import Table, Vocabulary
@@ -11,18 +10,11 @@ from lightgesture.fsm.forms import Table, Vocabulary
 class GrammarError(ValueError):
     """A grammar that cannot be used, in one line: file, place, reason; remedy."""
 
-    def __init__(self, file: str, place: str, reason: str, remedy: str) -> None:
+    @classmethod
+    def at(cls, file: str, place: str, reason: str, remedy: str) -> "GrammarError":
+        """The error at the key path, line or byte `place` of the file; "": the file as a whole."""
         parts = [file, place, f"{reason}; {remedy}"]
-        super().__init__(" ".join(": ".join(part for part in parts if part).split()))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _restored, (str(self),)
-
-
-def _restored(message: str) -> GrammarError:
-    error = GrammarError.__new__(GrammarError)
-    error.args = (message,)
-    return error
+        return cls(" ".join(": ".join(part for part in parts if part).split()))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

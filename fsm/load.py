@@ -18,7 +18,7 @@ def load_grammar(path: str | os.PathLike[str] | None = None) -> Grammar:
 
     GrammarError: the file cannot be read or something in it is wrong.
     """
-    file = os.fspath(BUNDLED if path is None else path)
+    file = os.fsdecode(BUNDLED if path is None else path)
     document = _parse(_read(file), file)
     # pydantic takes longer to import than everything else here, and only files need it
     from lightgesture.fsm.build import build
@@ -31,14 +31,14 @@ def _read(file: str) -> bytes:
         with open(file, "rb") as stream:
             content = stream.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise GrammarError(file, "", "no such file", "name an existing grammar file (TOML)") from None
+        raise GrammarError.at(file, "", "no such file", "name an existing grammar file (TOML)") from None
     except IsADirectoryError:
-        raise GrammarError(file, "", "is a folder", "name a grammar file (TOML)") from None
+        raise GrammarError.at(file, "", "is a folder", "name a grammar file (TOML)") from None
     except (OSError, ValueError) as error:  # ValueError: a null byte in the name
         reason = getattr(error, "strerror", None) or str(error)
-        raise GrammarError(file, "", f"cannot be read ({reason})", "name a readable file") from None
+        raise GrammarError.at(file, "", f"cannot be read ({reason})", "name a readable file") from None
     if len(content) > MAX_BYTES:
-        raise GrammarError(file, "", f"is larger than {MAX_BYTES} bytes", "name a grammar file (TOML)")
+        raise GrammarError.at(file, "", f"is larger than {MAX_BYTES} bytes", "name a grammar file (TOML)")
     return content
 
 
@@ -48,10 +48,10 @@ def _parse(content: bytes, file: str) -> dict[str, Any]:
     try:
         return tomllib.loads(content.decode("utf-8-sig"))  # some editors write a byte order mark
     except UnicodeDecodeError as error:
-        raise GrammarError(file, f"byte {error.start}", "is not UTF-8", "save the file as UTF-8") from None
+        raise GrammarError.at(file, f"byte {error.start}", "is not UTF-8", "save the file as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         remedy = "write valid TOML, each key once in its table"
-        raise GrammarError(file, "", f"TOML syntax: {error}", remedy) from None
+        raise GrammarError.at(file, "", f"TOML syntax: {error}", remedy) from None
     except (RecursionError, ValueError) as error:  # too deep, or an integer of thousands of digits
         reason = "too deeply nested" if isinstance(error, RecursionError) else str(error)
-        raise GrammarError(file, "", reason, "keep to the layout of the bundled grammar") from None
+        raise GrammarError.at(file, "", reason, "keep to the layout of the bundled grammar") from None

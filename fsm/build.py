@@ -37,7 +37,7 @@ def compile_grammar(content: GrammarFile, file: str) -> Grammar | list[Defect]:
     table = _compile(forms, vocabulary, defects)
     if table is None:
         return defects
-    _check_use(content, vocabulary, table, defects)
+    _check_use(content, table, defects)
     if defects:
         return defects
     return Grammar(
@@ -144,10 +144,10 @@ def _compile(forms: list[Form], vocabulary: Vocabulary, defects: list[Defect]) -
         return None
 
 
-def _check_use(content: GrammarFile, vocabulary: Vocabulary, table: Table, defects: list[Defect]) -> None:
+def _check_use(content: GrammarFile, table: Table, defects: list[Defect]) -> None:
     used = {word for row in table.transitions for word in row}
     for name, entries in (("idle_pairs", content.idle_pairs), ("pairs", content.pairs)):
         for key, word in entries.items():
-            if word not in used and word != vocabulary.join:
+            if word not in used:
                 remedy = "put it into a sentence of [[forms]] or remove the pair"
                 defects.append(Defect(key_path(name, key), f"no form uses '{word}'", remedy))

@@ -262,7 +262,7 @@ def spell(words: Iterable[str], join: str | None) -> str:
         if not is_digit(word):
             parts.append(word)
             continue
-        if len(parts) > 1 and parts[-1] == join and parts[-2].isdigit():
+        if parts and parts[-1] == join:  # the table lets it stand between digits alone
             parts.pop()
         if parts and parts[-1].isdigit():
             word = parts.pop() + word

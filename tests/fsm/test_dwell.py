@@ -47,7 +47,7 @@ def test_hold_of_one_frame_still_needs_a_release():
 
 
 def test_release_is_never_longer_than_the_hold():
-    assert held(Dwell(2, 9), "aabbaa") == [1, 3, 5]
+    assert held(Dwell(2, 9), "aabbaa..aa") == [1, 3, 5, 9]
 
 
 def test_grow_counts_sightings_and_keeps_the_first():

@@ -66,6 +66,17 @@ def test_optional_word_and_form_without_joiner(write_grammar, pick):
     assert (instruction.text, instruction.program, instruction.change) == ("STOP EXEC 3 NOW GO", 3, "NOW")
 
 
+def test_digits_are_counted_for_each_number(write_grammar, pick):
+    path = write_grammar(
+        ("CONTD SNAP [seconds] GO", "CONTD SNAP seconds UP program GO"), ("max_digits = 4", "max_digits = 2")
+    )
+    decoder = Decoder(load_grammar(path), hold=1)
+    signs = ["pic,0", "pic,pic", "ok,1", "ok,2", "right,right", "ok,0", "pic,ok", "ok,3", "ok,ok"]
+    events = [event for pair in signs for event in decoder.step(*pair.split(","), 0.0)]
+    (instruction,) = pick(events, "instruction")
+    assert (instruction.text, instruction.duration_s, instruction.program) == ("CONTD SNAP 12 UP 3 GO", 12, 3)
+
+
 def test_byte_order_mark_and_windows_line_ends_are_endured(tmp_path, grammar):
     text = Path(grammar.file).read_text(encoding="utf-8").replace("\n", "\r\n")
     path = tmp_path / "windows.toml"

@@ -1,0 +1,123 @@
+"""Standard output and standard error of the command line, and the progress bar."""
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from types import TracebackType
+from typing import IO, Any, Self
+
+from lightgesture.errors import UsageError
+
+
+def one_line(text: str) -> str:
+    """The text with everything unprintable escaped: file names may hold line feeds and stray bytes."""
+    if text.isprintable():
+        return text
+    return "".join(
+        sign if sign.isprintable() else sign.encode("unicode_escape").decode("ascii") for sign in text
+    )
+
+
+def say(text: str) -> None:
+    """One message on standard error."""
+    print(one_line(f"lightgesture: {text}"), file=sys.stderr, flush=True)
+
+
+def print_line(text: str) -> None:
+    """One line of results on standard output, at once, so that a reader at the other end is never behind.
+
+    What the stream's encoding lacks is escaped. UsageError: the stream takes no more, as on a full disk.
+    BrokenPipeError: the reader has gone.
+    """
+    encoding = sys.stdout.encoding or "utf-8"
+    try:
+        print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise UsageError(
+            f"standard output: cannot be written ({error.strerror}); send it elsewhere"
+        ) from error
+
+
+class Progress:
+    """A progress bar on standard error, where that is a terminal and the user wants one.
+
+    Lines of results go through `print_line`, which keeps them clear of the bar.
+    """
+
+    def __init__(self, label: str, total: int | None, unit: str, quiet: bool) -> None:
+        self._bar: Any = None
+        if not quiet and sys.stderr.isatty():
+            from tqdm import tqdm
+
+            self._bar = tqdm(
+                desc=one_line(label), total=total, unit=unit, leave=False, file=sys.stderr, dynamic_ncols=True
+            )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def advance(self) -> None:
+        """One more is done."""
+        if self._bar is not None:
+            self._bar.update()
+
+    def print_line(self, text: str) -> None:
+        """One line of results on standard output."""
+        if self._bar is None:
+            print_line(text)
+        else:
+            with self._bar.external_write_mode(file=sys.stdout):
+                print_line(text)
+
+
+@contextmanager
+def native_messages_muted() -> Iterator[None]:
+    """Keep what FFmpeg, libpng and their like print by themselves off standard error.
+
+    They write to file descriptor 2 behind Python's back, and every one of their complaints comes back as
+    a failed call that is reported in one clear line anyway. Within this block `sys.stderr` has the
+    terminal for itself. Where `sys.stderr` is not that descriptor (a notebook, a test), nothing is done.
+    """
+    original = sys.stderr
+    if not _is_descriptor(original, 2):
+        yield
+        return
+    original.flush()
+    kept = os.dup(2)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
+    sys.stderr = open(  # noqa: SIM115 - closed below, together with `kept`
+        kept, "w", encoding=original.encoding, errors="backslashreplace", buffering=1
+    )
+    try:
+        yield
+    finally:
+        muted, sys.stderr = sys.stderr, original
+        muted.flush()
+        os.dup2(kept, 2)
+        muted.close()
+
+
+def drop_output() -> None:
+    """Send standard output nowhere, after its reader has gone: else Python complains at exit."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
+
+
+def _is_descriptor(stream: IO[str] | None, number: int) -> bool:
+    try:
+        return stream is not None and stream.fileno() == number
+    except (OSError, ValueError, AttributeError):
+        return False

@@ -1,0 +1,20 @@
+"""Exit statuses, and the two errors that a user can mend: each text is one line: what, why, what to do."""
+
+from enum import IntEnum
+
+
+class ExitStatus(IntEnum):
+    """Exit status of the command line; the shell's own convention for an interruption."""
+
+    OK = 0
+    SOME_FAILED = 1
+    USAGE = 2
+    INTERRUPTED = 130
+
+
+class InputError(Exception):
+    """One input cannot be read, or not to its end. The other inputs go on; exit status 1."""
+
+
+class UsageError(Exception):
+    """Wrong use or configuration: an option, a model, a grammar, an output folder. Exit status 2."""

@@ -1,0 +1,60 @@
+"""A folder of frames, in natural order of their names."""
+
+import os
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Self
+
+from lightgesture.errors import InputError
+from lightgesture.frames import Frame
+from lightgesture.sources.names import natural_key
+from lightgesture.sources.pictures import is_picture_name, read_picture
+
+
+class FrameFolder:
+    """The pictures of one folder; other files in it and folders below it are passed over.
+
+    A folder has no container's time stamps: the time of a frame is its index divided by `fps`. A picture
+    that cannot be read is left out and its index and time with it; after the last one InputError tells
+    how many were left out and which was the first.
+    """
+
+    def __init__(self, path: str, fps: float) -> None:
+        self.name = path
+        self._fps = fps
+        self._files = _list_pictures(path)
+        self.frame_count: int | None = len(self._files)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Nothing is held open between frames."""
+
+    def __iter__(self) -> Iterator[Frame]:
+        left_out: list[InputError] = []
+        for index, file in enumerate(self._files):
+            try:
+                image = read_picture(os.path.join(self.name, file))
+            except InputError as error:
+                left_out.append(error)
+            else:
+                yield Frame(image, index, round(index / self._fps, 6))
+        if left_out:
+            count = f"{len(left_out)} of {len(self._files)} pictures"
+            raise InputError(f"{self.name}: {count} left out; the first: {left_out[0]}")
+
+
+def _list_pictures(path: str) -> list[str]:
+    try:
+        with os.scandir(path) as entries:
+            files = [entry.name for entry in entries if is_picture_name(entry.name) and entry.is_file()]
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); name a readable folder") from None
+    if not files:
+        raise InputError(
+            f"{path}: no pictures in this folder; name a folder of frames, such as PNG or JPEG files"
+        )
+    return sorted(files, key=natural_key)

@@ -1,0 +1,116 @@
+"""A video file, read from its first frame to its last."""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Self
+
+import cv2
+
+from lightgesture.errors import InputError
+from lightgesture.frames import Frame
+from lightgesture.sources.pictures import is_picture_name, to_bgr8
+
+
+@dataclass(frozen=True, slots=True)
+class VideoSettings:
+    """When a video counts as cut off.
+
+    Both must hold, for containers that store no number of frames promise one from the duration, which
+    an audio track may stretch, and some encoders count a frame or two that hold no picture.
+
+    spare_frames: missing frames that are forgiven. Larger: short losses at the end go unnoticed.
+    spare_s: seconds between the end of the last frame and the promised end that are forgiven, likewise.
+    sniffed_bytes: bytes looked at to tell text from video.
+    """
+
+    spare_frames: int = 2
+    spare_s: float = 0.15
+    sniffed_bytes: int = 4096
+
+
+SETTINGS = VideoSettings()
+
+_TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1b")
+
+
+class VideoFile:
+    """A video in any container that OpenCV's FFmpeg reads.
+
+    Frames are read in sequence, never by seeking, and the time of each is the container's own time stamp
+    (CAP_PROP_POS_MSEC after the frame was read): exact at a variable frame rate, where index / rate is
+    seconds off. InputError when opened: no video, or no frame of it can be decoded; at the end of the
+    iteration: the video ended early.
+    """
+
+    def __init__(self, path: str, settings: VideoSettings = SETTINGS) -> None:
+        self.name = path
+        self._settings = settings
+        _check_content(path, settings)
+        # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol.
+        self._capture = cv2.VideoCapture(os.path.abspath(path))
+        if not self._capture.isOpened():
+            raise InputError(
+                f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
+            )
+        promised = self._capture.get(cv2.CAP_PROP_FRAME_COUNT)
+        self.frame_count: int | None = int(promised) if promised >= 1 else None
+        self._rate = self._capture.get(cv2.CAP_PROP_FPS)
+        self._next = self._read(0)
+        if self._next is None:
+            self._capture.release()
+            raise InputError(f"{path}: no frame of this video can be decoded; copy or convert it again")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._capture.release()
+
+    def __iter__(self) -> Iterator[Frame]:
+        while self._next is not None:
+            frame = self._next
+            yield frame
+            self._next = self._read(frame.index + 1)
+            if self._next is None:
+                self._check_end(frame)
+
+    def _read(self, index: int) -> Frame | None:
+        is_read, image = self._capture.read()
+        if not is_read:
+            return None
+        # Microseconds are finer than any container's clock and hide the rounding of the division.
+        time_s = round(self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000.0, 6)
+        return Frame(to_bgr8(image), index, time_s)
+
+    def _check_end(self, last: Frame) -> None:
+        if self.frame_count is None or self._rate <= 0:
+            return
+        decoded = last.index + 1
+        missing_s = self.frame_count / self._rate - (last.time_s + 1.0 / self._rate)
+        if self.frame_count - decoded > self._settings.spare_frames and missing_s > self._settings.spare_s:
+            raise InputError(
+                f"{self.name}: the video ends early, after {decoded} of {self.frame_count} frames; "
+                "copy or record it again"
+            )
+
+
+def _check_content(path: str, settings: VideoSettings) -> None:
+    """Refuse what FFmpeg would make something of though it is no video: pictures, and text as a screen."""
+    try:
+        with open(path, "rb") as stream:
+            start = stream.read(settings.sniffed_bytes)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror}); name a readable file") from None
+    if not start:
+        raise InputError(f"{path}: is empty (0 bytes); copy or record it again")
+    if is_picture_name(path):
+        raise InputError(
+            f"{path}: is a single picture, no video; name its folder to decode all frames in it, "
+            "or use `lightgesture recognize`"
+        )
+    if all(byte >= 0x20 or byte in _TEXT_CONTROLS for byte in start):
+        raise InputError(f"{path}: is text, no video; name a video or a folder of frames")

@@ -1,0 +1,44 @@
+"""Pictures of the stages, for `--debug-dir`."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.results.atomic import replacing
+
+INTERVAL_S = 1.0
+"""Seconds of the source from one saved frame to the next: enough to follow a video, few enough to look at."""
+
+
+class DebugPictures:
+    """Saves `<folder>/<stage>-<index>.png` for the frames that `select` chose.
+
+    Of a stream these are the first frame and then one a second of the source's own time.
+    """
+
+    def __init__(self, folder: Path, interval_s: float = INTERVAL_S) -> None:
+        self.folder = folder
+        self._interval_s = interval_s
+        self._due_s: float | None = None
+        self.is_selected = False
+
+    def select(self, time_s: float) -> None:
+        """Decide whether the pictures of the frame at `time_s`, about to be processed, are saved."""
+        self.is_selected = self._due_s is None or time_s >= self._due_s
+        if self.is_selected:
+            self._due_s = time_s + self._interval_s
+
+    def start(self, folder: Path) -> None:
+        """Save the pictures of the next input, a single picture, in `folder`."""
+        self.folder = folder
+        self.is_selected = True
+
+    def write(self, stage: str, index: int, image_bgr: NDArray[np.uint8]) -> None:
+        """Save a picture of a stage. UsageError: the folder cannot be written."""
+        if not self.is_selected:
+            return
+        content = cv2.imencode(".png", image_bgr)[1].tobytes()
+        with replacing(self.folder / f"{stage}-{index:06d}.png") as temporary:
+            temporary.write_bytes(content)

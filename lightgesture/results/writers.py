@@ -1,0 +1,71 @@
+"""Writers of record files, one a format, and the table of them."""
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from pathlib import Path
+from typing import Protocol, TextIO
+
+from lightgesture.records import Record
+from lightgesture.results.atomic import replacing
+
+
+class Writer(Protocol):
+    """Takes the records of one input, in order."""
+
+    def write(self, record: Record) -> None: ...
+
+
+def to_json_line(record: Record, encoding: str = "utf-8") -> str:
+    """One JSON object on one line, without the line feed; escaped where `encoding` lacks a character."""
+    content = record.to_dict()
+    text = json.dumps(content, ensure_ascii=False)
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:  # a narrow terminal, or a file name that is no UTF-8
+        return json.dumps(content)
+    return text
+
+
+class JsonLinesWriter:
+    """One JSON object a line, UTF-8."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, record: Record) -> None:
+        """Append a record."""
+        self._stream.write(to_json_line(record) + "\n")
+
+
+class JsonPrinter:
+    """Prints one JSON object a line through `print_line`; `name` stands in every record already."""
+
+    def __init__(self, print_line: Callable[[str], None], name: str) -> None:
+        self._print_line = print_line
+        self.name = name
+
+    def write(self, record: Record) -> None:
+        """Print a record."""
+        self._print_line(to_json_line(record, sys.stdout.encoding or "utf-8"))
+
+
+@contextmanager
+def open_json_lines(path: Path) -> Iterator[Writer]:
+    """Write a `.jsonl` file that appears under its name when the block ends well."""
+    with replacing(path) as temporary, open(temporary, "w", encoding="utf-8", newline="\n") as stream:
+        yield JsonLinesWriter(stream)
+
+
+WRITERS: dict[str, Callable[[Path], AbstractContextManager[Writer]]] = {".jsonl": open_json_lines}
+"""Suffix of a record file to what opens it for writing."""
+
+
+def open_writer(path: str | os.PathLike[str]) -> AbstractContextManager[Writer]:
+    """Open the writer that belongs to the suffix of `path`; ValueError: there is none."""
+    place = Path(path)
+    if place.suffix not in WRITERS:
+        raise ValueError(f"{place}: no writer for {place.suffix!r}; known are {', '.join(WRITERS)}")
+    return WRITERS[place.suffix](place)

@@ -1,0 +1,168 @@
+"""The options of the decoding commands: one model feeds the command line, its help and `--config`.
+
+Precedence: command line, then configuration file, then the grammar's own `[dwell]` (for `hold`), then the
+defaults below.
+"""
+
+import argparse
+import difflib
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from lightgesture.errors import UsageError
+
+DEFAULT_FPS = 30.0
+"""Frames a second of folders of frames; that of `open_source`, whose module is too heavy for `--help`."""
+
+MAX_HOLD = 1000
+"""Longest hold, frames: 16 s at 60 frames a second."""
+
+MAX_FPS = 1000.0
+"""Highest rate of a folder of frames, frames a second."""
+
+DECODE = "decode"
+RECOGNIZE = "recognize"
+
+
+def _option(
+    default: Any, text: str, metavar: str | None = None, *, only: str | None = None, **checks: Any
+) -> Any:
+    """A field that is an option too; `only`: the one command that has it on its command line."""
+    extra: Any = {"metavar": metavar, "only": only}
+    return Field(default=default, description=text, json_schema_extra=extra, **checks)
+
+
+class DecodeSettings(BaseModel):
+    """Every option of the decoding commands, checked."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    model: str = _option("svm", "classifier: svm, cnn or a model file", "svm|cnn|PATH", min_length=1)
+    grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=DECODE)
+    hold: int | None = _option(
+        None,
+        "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
+        "N",
+        only=DECODE,
+        ge=1,
+        le=MAX_HOLD,
+    )
+    mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
+    fps: float = _option(
+        DEFAULT_FPS,
+        f"frames a second of folders of frames; videos have their own time (default: {DEFAULT_FPS:g})",
+        "F",
+        only=DECODE,
+        gt=0,
+        le=MAX_FPS,
+        allow_inf_nan=False,
+    )
+    as_json: bool = _option(False, "records on standard output, one JSON object a line", alias="json")
+    frames: bool = _option(False, "a record for every frame too", only=DECODE)
+    out: str | None = _option(
+        None, "write DIR/<input stem>.jsonl with the records of each input", "DIR", only=DECODE, min_length=1
+    )
+    debug_dir: str | None = _option(
+        None, "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png", "DIR", min_length=1
+    )
+    quiet: bool = _option(False, "no progress and no remarks on standard error")
+
+
+_PATHS = ("grammar", "out", "debug_dir", "model")
+_BUILT_IN_MODELS = ("svm", "cnn")
+
+
+def add_options(parser: argparse.ArgumentParser, command: str) -> None:
+    """Declare `--config` and the options that `command` has; what is not given stays out of the result."""
+    for name, field in DecodeSettings.model_fields.items():
+        extra: Any = field.json_schema_extra
+        if extra["only"] not in (None, command):
+            continue
+        key = field.alias or name
+        kind: dict[str, Any] = {"metavar": extra["metavar"]}
+        if field.annotation is bool:
+            kind = {"action": argparse.BooleanOptionalAction}
+        parser.add_argument(
+            _flag(key), dest=key, default=argparse.SUPPRESS, help=_help(field, extra["metavar"]), **kind
+        )
+    parser.add_argument(
+        "--config", metavar="FILE", help="TOML file with any of these options; the command line goes first"
+    )
+
+
+def load_settings(args: argparse.Namespace) -> DecodeSettings:
+    """Settings from the parsed options of `add_options` and from the file that `--config` names.
+
+    UsageError: the file cannot be read, or an option or a key is wrong.
+    """
+    known = {field.alias or name for name, field in DecodeSettings.model_fields.items()}
+    given = {key: value for key, value in vars(args).items() if key in known}
+    config = {} if args.config is None else read_config(args.config)
+    try:
+        return DecodeSettings.model_validate({**config, **given})
+    except ValidationError as error:
+        raise UsageError(_explain(error, _flag)) from None
+
+
+def read_config(path: str) -> dict[str, Any]:
+    """The checked content of a configuration file.
+
+    Keys are the options' names, with `_` or `-`; a relative path in it starts at the file's own folder.
+    UsageError: it cannot be read, is no TOML, or has a wrong key or value.
+    """
+    content = {key.replace("-", "_"): value for key, value in _read_toml(path).items()}
+    try:
+        DecodeSettings.model_validate(content, strict=True)
+    except ValidationError as error:
+        raise UsageError(f"{path}: {_explain(error, str)}") from None
+    folder = os.path.dirname(path)
+    for key in _PATHS:
+        if key in content and content[key] not in _BUILT_IN_MODELS:
+            content[key] = os.path.join(folder, content[key])
+    return content
+
+
+def _read_toml(path: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read ({error.strerror}); name a TOML file") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: is no UTF-8 text; save the configuration as UTF-8") from None
+    except (ValueError, RecursionError) as error:  # TOML syntax is a ValueError too
+        reason = str(error) or "too deeply nested"
+        raise UsageError(f"{path}: is no valid TOML ({reason}); write lines such as hold = 10") from None
+
+
+def _flag(key: str) -> str:
+    return "--" + key.replace("_", "-")
+
+
+def _help(field: FieldInfo, metavar: str | None) -> str:
+    text = (field.description or "").replace("%", "%%")
+    is_told = metavar is None or field.default is None or "(default" in text
+    return text if is_told else f"{text} (default: {field.default})"
+
+
+def _explain(error: ValidationError, show: Any) -> str:
+    return "; ".join(_explain_one(detail, show) for detail in error.errors(include_url=False))
+
+
+def _explain_one(detail: ErrorDetails, show: Any) -> str:
+    key = str(detail["loc"][0])
+    if detail["type"] == "extra_forbidden":
+        return f"{key}: unknown key; {_suggest(key)}"
+    shown = repr(detail["input"])[:60]
+    return f"{show(key)}: {detail['msg'].replace('Input should', 'should')}, not {shown}; change it"
+
+
+def _suggest(key: str) -> str:
+    known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
+    close = difflib.get_close_matches(key, known, n=1)
+    return f"did you mean '{close[0]}'?" if close else "known are " + ", ".join(known)

@@ -1,0 +1,7 @@
+"""`python -m lightgesture`."""
+
+import sys
+
+from lightgesture.cli import main
+
+sys.exit(main())

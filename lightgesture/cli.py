@@ -1,0 +1,84 @@
+"""The command line: which command, and what becomes of its errors.
+
+A command is a module with `add_arguments(parser)` and `run(args) -> int`, imported only when it is the one
+that was asked for, so that `lightgesture --help` is quick and loads none of the heavy libraries.
+"""
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import NoReturn, Protocol, cast
+
+from lightgesture._version import __version__
+from lightgesture.console import drop_output, say
+from lightgesture.errors import ExitStatus, InputError, UsageError
+
+COMMANDS = {
+    "decode": "videos and folders of frames to instructions",
+    "recognize": "single pictures to hands and their tokens",
+    "train": "build a model from labelled pictures",
+    "evaluate": "score the models and the whole chain on labelled pictures",
+}
+"""Name of a command, which is its module in `lightgesture.commands` too, to its line of help."""
+
+
+class Command(Protocol):
+    """The interface of a command module."""
+
+    def add_arguments(self, parser: argparse.ArgumentParser) -> None: ...
+
+    def run(self, args: argparse.Namespace) -> int: ...
+
+
+class Parser(argparse.ArgumentParser):
+    """Tells what is wrong in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        """Leave with the exit status of wrong usage."""
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit status.
+
+    0: all good. 1: some inputs failed, or the reader of the results went away; the other inputs are done.
+    2: wrong usage or configuration. 130: interrupted; the results of finished inputs are kept.
+    """
+    try:
+        return _run(sys.argv[1:] if argv is None else list(argv))
+    except InputError as error:
+        say(str(error))
+        return ExitStatus.SOME_FAILED
+    except UsageError as error:
+        say(str(error))
+        return ExitStatus.USAGE
+    except KeyboardInterrupt:
+        say("interrupted; the results of finished inputs are kept")
+        return ExitStatus.INTERRUPTED
+    except BrokenPipeError:
+        drop_output()
+        return ExitStatus.SOME_FAILED
+
+
+def _run(argv: list[str]) -> int:
+    parser = Parser(
+        prog="lightgesture",
+        description="Read a diver's two-handed signs in video and turn them into robot instructions.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"lightgesture {__version__}")
+    choices = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    # The options before the command take no value, so the first word without a dash is the command.
+    chosen = next((word for word in argv if not word.startswith("-")), None)
+    for name, text in COMMANDS.items():
+        child = choices.add_parser(name, help=text, description=f"{name}: {text}", allow_abbrev=False)
+        if name == chosen:
+            command = cast(Command, importlib.import_module(f"lightgesture.commands.{name}"))
+            command.add_arguments(child)
+            child.set_defaults(run=command.run)
+    try:
+        args = parser.parse_args(argv)
+    except SystemExit as leaving:  # --help and --version, printed
+        return int(leaving.code or 0)
+    return int(args.run(args))

@@ -1,0 +1,29 @@
+"""`lightgesture decode`: videos and folders of frames to instructions."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    from lightgesture.settings import DECODE, add_options
+
+    parser.add_argument(
+        "inputs",
+        nargs="*",
+        metavar="INPUT",
+        help="video, folder of frames (natural order) or glob; none: the bundled clip",
+    )
+    add_options(parser, DECODE)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Decode the inputs; 0 when all were, 1 when some failed."""
+    from lightgesture.settings import load_settings
+    from lightgesture.sources import expand_inputs
+
+    settings = load_settings(args)
+    from lightgesture.console import native_messages_muted
+    from lightgesture.decoding import decode
+
+    with native_messages_muted():
+        return decode(expand_inputs(args.inputs), settings)

@@ -1,0 +1,23 @@
+"""`lightgesture recognize`: single pictures to hands and their tokens."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    from lightgesture.settings import RECOGNIZE, add_options
+
+    parser.add_argument("inputs", nargs="+", metavar="IMAGE", help="picture or glob")
+    add_options(parser, RECOGNIZE)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Recognize the pictures; 0 when all were read, 1 when some failed."""
+    from lightgesture.console import native_messages_muted
+    from lightgesture.recognition import recognize
+    from lightgesture.settings import load_settings
+    from lightgesture.sources import expand_inputs
+
+    settings = load_settings(args)
+    with native_messages_muted():
+        return recognize(expand_inputs(args.inputs), settings)

@@ -2,12 +2,12 @@
 
 import argparse
 import json
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lightgesture.errors import InputError, UsageError
+from lightgesture.console import print_line, say
+from lightgesture.errors import ExitStatus, InputError, UsageError
 
 if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
@@ -40,7 +40,10 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.benchmarks import accuracy
     from lightgesture.benchmarks.datasets import find_data
     from lightgesture.models import ModelError, load_classifier
+    from lightgesture.opening import make_folder
 
+    if args.out:
+        make_folder(args.out)
     data = find_data(args.data)
     available = accuracy.available_targets(data)
     targets = [args.target] if args.target else available
@@ -58,9 +61,9 @@ def run(args: argparse.Namespace) -> int:
             report = accuracy.evaluate_regions(methods, data, show_progress)
         print_report(report, args.json, is_first=position == 0)
         if args.out:
-            for path in accuracy.save_failures(report, Path(args.out), _message):
-                _message(f"wrote {path}")
-    return 0
+            for path in accuracy.save_failures(report, Path(args.out), say):
+                say(f"wrote {path}")
+    return ExitStatus.OK
 
 
 def print_report(report: "Report", as_json: bool, is_first: bool = True) -> None:
@@ -70,10 +73,9 @@ def print_report(report: "Report", as_json: bool, is_first: bool = True) -> None
     if as_json:
         for table in report.tables:
             for row in table.to_dicts():
-                print(json.dumps(row, ensure_ascii=False))
+                print_line(json.dumps(row, ensure_ascii=False))
     else:
-        print(("" if is_first else "\n") + to_text(report.tables))
-    sys.stdout.flush()
+        print_line(("" if is_first else "\n") + to_text(report.tables))
 
 
 def show_progress(samples: "Iterable[Sample]", heading: str) -> "Iterable[Sample]":
@@ -82,7 +84,3 @@ def show_progress(samples: "Iterable[Sample]", heading: str) -> "Iterable[Sample
 
     bar: Iterable[Sample] = tqdm(samples, desc=heading, unit="picture", leave=False, disable=None)
     return bar
-
-
-def _message(text: str) -> None:
-    print(text, file=sys.stderr)

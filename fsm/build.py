@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lightgesture.fsm.events import Pair
-from lightgesture.fsm.forms import Form, FormError, Table, Vocabulary, compile_table, parse_form
+from lightgesture.fsm.forms import Form, FormError, Vocabulary, parse_form
 from lightgesture.fsm.grammar import DwellSettings, Grammar, GrammarError, Limits
 from lightgesture.fsm.schema import Defect, GrammarFile, key_path, parse_document
+from lightgesture.fsm.table import Table, compile_table
 
 
 def build(document: dict[str, Any], file: str) -> Grammar:

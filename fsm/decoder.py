@@ -4,9 +4,10 @@ import math
 
 from lightgesture.fsm.dwell import Dwell, Hold, release_frames
 from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.forms import Form, bind, spell
+from lightgesture.fsm.forms import Form, spell
 from lightgesture.fsm.grammar import Grammar
 from lightgesture.fsm.sentence import Sentence, name_expected, objection
+from lightgesture.fsm.table import bind
 from lightgesture.fsm.timeline import Timeline
 
 IDLE = "idle"

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lightgesture.fsm.events import Pair
-from lightgesture.fsm.forms import Table, Vocabulary
+from lightgesture.fsm.forms import Vocabulary
+from lightgesture.fsm.table import Table
 
 
 class GrammarError(ValueError):

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import Arguments, is_digit, spell, split_carrier
+from lightgesture.fsm.forms import is_digit, spell, split_carrier
 from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.table import Arguments
 
 
 @dataclass(slots=True, kw_only=True)

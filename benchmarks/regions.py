@@ -114,14 +114,15 @@ def _answer(sample: Sample, readings: Sequence[Reading]) -> Answer:
 def regions_table(runs: Sequence[Run]) -> Table:
     """Hands found, tokens, sides and pairs of every run."""
     columns = (
-        *("method", "group", "mode", "frames", "hands", "found", "found_share", "mean_iou"),
-        *("tokens", "read", "read_share", "wrong", "sides", "sides_right"),
-        *("pairs", "both_found", "pairs_read", "both", "both_share", "extra"),
+        *("method", "group", "mode", "frames", "hands", "found", "found_share", "mean_iou", "side_share"),
+        *("tokens", "read", "read_share", "wrong", "pairs", "both", "both_share", "extra"),
     )
     note = (
         f"found: IoU >= 0.5 with the label, at most {MAX_BOXES} boxes a frame; read: found and the right "
-        "token; wrong: found and given another token;\nboth: both hands of a frame read; extra: boxes on no "
-        "hand where all hands are labelled.\n"
+        "token; wrong: found and given another token;\n"
+        "side_share: sides right among the found; pairs: frames with two hands of known token; both: both "
+        "read;\n"
+        "extra: boxes on no hand where all hands are labelled. "
         "drone counts only for a model trained without the source emre_drone."
     )
     return Table("regions", "Hands in whole frames", columns, tuple(map(_region_row, runs)), note)
@@ -129,16 +130,24 @@ def regions_table(runs: Sequence[Run]) -> Table:
 
 def _region_row(run: Run) -> dict[str, Cell]:
     score = run.score
-    counts: dict[str, Cell] = {name: getattr(score, name) for name in Score.__slots__ if name != "iou_sum"}
     return {
         "method": run.method,
         "group": run.group,
         "mode": run.mode,
-        **counts,
+        "frames": score.frames,
+        "hands": score.hands,
+        "found": score.found,
         "found_share": share(score.found, score.hands),
-        "read_share": share(score.read, score.tokens),
-        "both_share": share(score.both, score.pairs_read),
         "mean_iou": score.mean_iou,
+        "side_share": share(score.sides_right, score.sides),
+        "tokens": score.tokens,
+        "read": score.read,
+        "read_share": share(score.read, score.tokens),
+        "wrong": score.wrong,
+        "pairs": score.pairs,
+        "both": score.both,
+        "both_share": share(score.both, score.pairs),
+        "extra": score.extra,
     }
 
 

@@ -49,9 +49,8 @@ class Score:
     hands, found: labelled hands, and those with a box at IoU >= 0.5. sides, sides_right: found hands whose
     side is known, and right. tokens: labelled hands with one of the ten tokens; read: of these, found with
     the right token; wrong: found hands (of any known token, "none" included) that were given another token.
-    pairs: frames with two labelled hands; both: of the pairs with two known tokens (`pairs_read`), both
-    hands found and both tokens right. boxes: boxes given; extra: boxes on no hand, in completely labelled
-    frames. iou_sum: summed IoU of the found hands.
+    pairs: frames with two labelled hands, both of the ten tokens; both: of these, both hands read. extra:
+    boxes on no hand, in completely labelled frames. iou_sum: summed IoU of the found hands.
     """
 
     frames: int = 0
@@ -63,10 +62,7 @@ class Score:
     read: int = 0
     wrong: int = 0
     pairs: int = 0
-    both_found: int = 0
-    pairs_read: int = 0
     both: int = 0
-    boxes: int = 0
     extra: int = 0
     iou_sum: float = 0.0
 
@@ -130,8 +126,7 @@ def score_frame(labels: Sequence[Label], readings: Sequence[Reading], complete: 
     sided = [(label, reading) for label, reading in found if label.side is not None]
     named = [label for label in labels if is_token(label.token)]
     read = [label for label, reading in found if is_token(label.token) and reading.token == label.token]
-    is_pair = len(labels) == 2
-    is_named_pair = is_pair and len(named) == 2
+    is_pair = len(labels) == 2 and len(named) == 2
     return Score(
         frames=1,
         hands=len(labels),
@@ -145,10 +140,7 @@ def score_frame(labels: Sequence[Label], readings: Sequence[Reading], complete: 
             for label, reading in found
         ),
         pairs=int(is_pair),
-        both_found=int(is_pair and len(found) == 2),
-        pairs_read=int(is_named_pair),
-        both=int(is_named_pair and len(read) == 2),
-        boxes=len(readings),
+        both=int(is_pair and len(read) == 2),
         extra=len(readings) - len(found) if complete else 0,
         iou_sum=sum(overlap for _, (_, overlap) in pairs),
     )

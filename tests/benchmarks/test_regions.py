@@ -42,8 +42,8 @@ def test_rows_of_the_regions_table(runs):
         "wrong": 1,
     }
     assert (hover["found_share"], hover["mean_iou"]) == (0.5, 1.0)
-    assert (hover["pairs"], hover["pairs_read"], hover["both"], hover["both_share"]) == (2, 1, 0, 0.0)
-    assert (hover["sides"], hover["sides_right"], hover["extra"]) == (2, 2, 0)
+    assert (hover["pairs"], hover["both"], hover["both_share"]) == (1, 0, 0.0)
+    assert (hover["side_share"], hover["extra"]) == (1.0, 0)
     assert {**sequence, "mode": "single"} == hover
     assert (tank["found"], tank["read"], tank["wrong"], tank["both_share"]) == (1, 0, 1, None)
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import cv2
 
@@ -15,22 +15,25 @@ from lightgesture.sources.pictures import is_picture_name, to_bgr8
 
 @dataclass(frozen=True, slots=True)
 class VideoSettings:
-    """When a video counts as cut off.
+    """When a video counts as cut off: when both more frames and more seconds are missing than are spared.
 
-    Both must hold, for containers that store no number of frames promise one from the duration, which
-    an audio track may stretch, and some encoders count a frame or two that hold no picture.
-
-    spare_frames: missing frames that are forgiven. Larger: short losses at the end go unnoticed.
-    spare_s: seconds between the end of the last frame and the promised end that are forgiven, likewise.
-    sniffed_bytes: bytes looked at to tell text from video.
+    spare_frames: missing frames that are forgiven, for some encoders count one or two that hold no picture.
+    spare_s: seconds from the end of the last frame to the promised end that are forgiven where the container
+    stores the number of frames. spare_s_estimated: likewise where the number comes from the duration, which
+    an audio track may stretch. Larger values let longer losses go unnoticed.
+    sniffed_bytes: bytes at the start of a file looked at to tell text from video.
     """
 
     spare_frames: int = 2
-    spare_s: float = 0.15
+    spare_s: float = 0.1
+    spare_s_estimated: float = 0.5
     sniffed_bytes: int = 4096
 
 
 SETTINGS = VideoSettings()
+
+_MP4_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
+"""Types of the box that opens an MP4 or QuickTime file, after its size of four bytes."""
 
 _TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1b")
 
@@ -46,10 +49,15 @@ class VideoFile:
 
     def __init__(self, path: str, settings: VideoSettings = SETTINGS) -> None:
         self.name = path
-        self._settings = settings
-        _check_content(path, settings)
-        # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol.
-        self._capture = cv2.VideoCapture(os.path.abspath(path))
+        start = _read_start(path, settings.sniffed_bytes)
+        _refuse_no_video(path, start)
+        is_counted = start[:4] == b"RIFF" or start[4:8] in _MP4_BOXES
+        self._spare_s = settings.spare_s if is_counted else settings.spare_s_estimated
+        self._spare_frames = settings.spare_frames
+        # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol. Bytes,
+        # which OpenCV's stubs do not know, for a text that is no UTF-8 crashes it.
+        file: Any = os.fsencode(os.path.abspath(path))
+        self._capture = cv2.VideoCapture(file)
         if not self._capture.isOpened():
             raise InputError(
                 f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
@@ -91,20 +99,23 @@ class VideoFile:
             return
         decoded = last.index + 1
         missing_s = self.frame_count / self._rate - (last.time_s + 1.0 / self._rate)
-        if self.frame_count - decoded > self._settings.spare_frames and missing_s > self._settings.spare_s:
+        if self.frame_count - decoded > self._spare_frames and missing_s > self._spare_s:
             raise InputError(
                 f"{self.name}: the video ends early, after {decoded} of {self.frame_count} frames; "
                 "copy or record it again"
             )
 
 
-def _check_content(path: str, settings: VideoSettings) -> None:
-    """Refuse what FFmpeg would make something of though it is no video: pictures, and text as a screen."""
+def _read_start(path: str, length: int) -> bytes:
     try:
         with open(path, "rb") as stream:
-            start = stream.read(settings.sniffed_bytes)
+            return stream.read(length)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); name a readable file") from None
+
+
+def _refuse_no_video(path: str, start: bytes) -> None:
+    """Refuse what FFmpeg would make something of though it is no video: pictures, and text as a screen."""
     if not start:
         raise InputError(f"{path}: is empty (0 bytes); copy or record it again")
     if is_picture_name(path):

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import NoReturn, Protocol, cast
 
 from lightgesture._version import __version__
-from lightgesture.console import drop_output, say
+from lightgesture.console import ReaderGoneError, drop_output, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
 COMMANDS = {
@@ -56,7 +56,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         say("interrupted; the results of finished inputs are kept")
         return ExitStatus.INTERRUPTED
-    except BrokenPipeError:
+    except (ReaderGoneError, BrokenPipeError):
         drop_output()
         return ExitStatus.SOME_FAILED
 

@@ -10,6 +10,10 @@ from typing import IO, Any, Self
 from lightgesture.errors import UsageError
 
 
+class ReaderGoneError(Exception):
+    """Whoever read the results from standard output has gone, as `head` does when it has enough."""
+
+
 def one_line(text: str) -> str:
     """The text with everything unprintable escaped: file names may hold line feeds and stray bytes."""
     if text.isprintable():
@@ -28,13 +32,13 @@ def print_line(text: str) -> None:
     """One line of results on standard output, at once, so that a reader at the other end is never behind.
 
     What the stream's encoding lacks is escaped. UsageError: the stream takes no more, as on a full disk.
-    BrokenPipeError: the reader has gone.
+    ReaderGoneError: nobody reads it any more.
     """
     encoding = sys.stdout.encoding or "utf-8"
     try:
         print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
-    except BrokenPipeError:
-        raise
+    except BrokenPipeError as error:
+        raise ReaderGoneError from error
     except OSError as error:
         raise UsageError(
             f"standard output: cannot be written ({error.strerror}); send it elsewhere"

@@ -14,15 +14,11 @@ def output_stems(inputs: Sequence[str]) -> list[str]:
     """
     paths = [Path(name).absolute() for name in inputs]
     stems = [_short(path) for path in paths]
-    depth = max((len(path.parts) for path in paths), default=0)
-    for parts in range(2, depth + 1):
-        twice = _repeated(stems)
-        if not twice:
-            break
-        stems = [
-            _long(path, parts) if stem.casefold() in twice else stem
-            for path, stem in zip(paths, stems, strict=True)
-        ]
+    depths = [1] * len(paths)
+    while places := [place for place in _repeated(stems) if depths[place] < len(paths[place].parts)]:
+        for place in places:
+            depths[place] += 1
+            stems[place] = _long(paths[place], depths[place])
     return _numbered(stems)
 
 
@@ -32,13 +28,14 @@ def _short(path: Path) -> str:
     return (name if path.is_dir() else Path(name).stem) or "input"
 
 
-def _long(path: Path, parts: int) -> str:
-    return "_".join(part.strip("/\\:") for part in path.parts[-parts:])
+def _long(path: Path, depth: int) -> str:
+    parts = (part.strip("/\\:") for part in path.parts[-depth:])
+    return "_".join(part for part in parts if part)
 
 
-def _repeated(stems: Sequence[str]) -> set[str]:
+def _repeated(stems: Sequence[str]) -> list[int]:
     counts = Counter(stem.casefold() for stem in stems)
-    return {stem for stem, count in counts.items() if count > 1}
+    return [place for place, stem in enumerate(stems) if counts[stem.casefold()] > 1]
 
 
 def _numbered(stems: Sequence[str]) -> list[str]:

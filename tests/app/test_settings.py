@@ -1,0 +1,122 @@
+"""Options: defaults, precedence, the configuration file and what is refused."""
+
+import argparse
+
+import pytest
+
+from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.settings import DECODE, DecodeSettings, add_options, load_settings
+
+
+def load(*arguments):
+    parser = argparse.ArgumentParser(allow_abbrev=False)
+    add_options(parser, DECODE)
+    return load_settings(parser.parse_args([str(argument) for argument in arguments]))
+
+
+@pytest.fixture
+def config(tmp_path):
+    def write(text, encoding="utf-8"):
+        path = tmp_path / "my config.toml"
+        path.write_text(text, encoding=encoding)
+        return path
+
+    return write
+
+
+def test_defaults():
+    settings = load()
+    assert settings == DecodeSettings()
+    assert (settings.model, settings.hold, settings.fps, settings.as_json) == ("svm", None, 30.0, False)
+
+
+def test_command_line_goes_before_the_file(config):
+    path = config('hold = 9\nfps = 12\nmirrored = true\njson = true\nmodel = "svm"\n')
+    settings = load("--config", path, "--hold", 3, "--no-mirrored")
+    assert (settings.hold, settings.fps, settings.mirrored, settings.as_json) == (3, 12.0, False, True)
+
+
+def test_every_option_may_stand_in_the_file(config):
+    path = config(
+        'model = "/m.npz"\ngrammar = "/g.toml"\nhold = 9\nmirrored = true\nfps = 12.5\njson = true\n'
+        'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
+    )
+    settings = load("--config", path)
+    assert settings.model_dump() == {
+        "model": "/m.npz",
+        "grammar": "/g.toml",
+        "hold": 9,
+        "mirrored": True,
+        "fps": 12.5,
+        "as_json": True,
+        "frames": True,
+        "out": "/o",
+        "debug_dir": "/d",
+        "quiet": True,
+    }
+
+
+def test_paths_in_the_file_start_at_its_folder(config, tmp_path):
+    settings = load("--config", config('grammar = "g.toml"\nout = "results"\nmodel = "svm"\n'))
+    assert settings.grammar == str(tmp_path / "g.toml")
+    assert settings.out == str(tmp_path / "results")
+    assert settings.model == "svm"
+
+
+def test_a_byte_order_mark_does_no_harm(config):
+    assert load("--config", config("hold = 4\n", encoding="utf-8-sig")).hold == 4
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("hodl = 3", "hodl: unknown key; did you mean 'hold'?"),
+        ("xyzzy = 3", "xyzzy: unknown key; known are model, grammar, hold"),
+        ("[decode]\nhold = 3", "decode: unknown key"),
+        ('hold = "3"', "hold: should be a valid integer, not '3'"),
+        ("hold = 0", "hold: should be greater than or equal to 1, not 0"),
+        ("fps = nan", "fps: should be a finite number, not nan"),
+        ("mirrored = 1", "mirrored: should be a valid boolean, not 1"),
+        ("hold = ", "is no valid TOML"),
+        ("hold = 1\nhold = 2", "is no valid TOML"),
+    ],
+)
+def test_wrong_file(config, text, message):
+    path = config(text)
+    with pytest.raises(UsageError) as caught:
+        load("--config", path)
+    assert str(caught.value).startswith(f"{path}: {message}")
+
+
+def test_file_that_cannot_be_read(config, tmp_path):
+    with pytest.raises(UsageError, match="No such file"):
+        load("--config", tmp_path / "none.toml")
+    with pytest.raises(UsageError, match="Is a directory"):
+        load("--config", tmp_path)
+    with pytest.raises(UsageError, match="no UTF-8 text"):
+        load("--config", config('out = "é"', encoding="latin-1"))
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "message"),
+    [
+        ("--hold", "0", "--hold: should be greater than or equal to 1, not '0'"),
+        ("--hold", "x", "--hold: should be a valid integer, unable to parse string as an integer, not 'x'"),
+        ("--fps", "0", "--fps: should be greater than 0, not '0'"),
+        ("--fps", "inf", "--fps: should be"),
+        ("--out", "", "--out: String should have at least 1 character, not ''"),
+    ],
+)
+def test_wrong_option(option, value, message):
+    with pytest.raises(UsageError) as caught:
+        load(option, value)
+    assert str(caught.value).startswith(message)
+
+
+@pytest.mark.usefixtures("fake")
+def test_wrong_key_through_the_command_line(run, config, make_video):
+    path = config("hodl = 3")
+    result = run("decode", make_video(), "--config", path)
+    assert result.status == ExitStatus.USAGE
+    assert result.err == [f"lightgesture: {path}: hodl: unknown key; did you mean 'hold'?"]
+    assert result.out == []

@@ -3,7 +3,7 @@
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from types import TracebackType
 from typing import IO, Any, Self
 
@@ -48,7 +48,7 @@ def print_line(text: str) -> None:
 class Progress:
     """A progress bar on standard error, where that is a terminal and the user wants one.
 
-    Lines of results go through `print_line`, which keeps them clear of the bar.
+    Lines of results go through its `print_line` and messages through its `say`: they keep clear of the bar.
     """
 
     def __init__(self, label: str, total: int | None, unit: str, quiet: bool) -> None:
@@ -76,11 +76,16 @@ class Progress:
 
     def print_line(self, text: str) -> None:
         """One line of results on standard output."""
-        if self._bar is None:
+        with self._bar_away(sys.stdout):
             print_line(text)
-        else:
-            with self._bar.external_write_mode(file=sys.stdout):
-                print_line(text)
+
+    def say(self, text: str) -> None:
+        """One message on standard error."""
+        with self._bar_away(sys.stderr):
+            say(text)
+
+    def _bar_away(self, stream: IO[str]) -> AbstractContextManager[Any]:
+        return nullcontext() if self._bar is None else self._bar.external_write_mode(file=stream)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from lightgesture.console import Progress, one_line, say
+from lightgesture.console import Progress, one_line
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.opening import make_debug_pictures, open_pipeline
 from lightgesture.records import FrameRecord
@@ -29,7 +29,7 @@ def recognize(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
             try:
                 image = read_picture(name)
             except InputError as error:
-                say(str(error))
+                progress.say(str(error))
                 status = ExitStatus.SOME_FAILED
                 continue
             if debug is not None:

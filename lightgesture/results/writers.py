@@ -11,6 +11,8 @@ from typing import Protocol, TextIO
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
 
+_SEPARATORS = (",", ":")
+
 
 class Writer(Protocol):
     """Takes the records of one input, in order."""
@@ -21,11 +23,11 @@ class Writer(Protocol):
 def to_json_line(record: Record, encoding: str = "utf-8") -> str:
     """One JSON object on one line, without the line feed; escaped where `encoding` lacks a character."""
     content = record.to_dict()
-    text = json.dumps(content, ensure_ascii=False)
+    text = json.dumps(content, ensure_ascii=False, separators=_SEPARATORS)
     try:
         text.encode(encoding)
     except UnicodeEncodeError:  # a narrow terminal, or a file name that is no UTF-8
-        return json.dumps(content)
+        return json.dumps(content, separators=_SEPARATORS)
     return text
 
 

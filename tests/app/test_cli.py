@@ -124,9 +124,11 @@ def test_progress_only_on_a_terminal_that_wants_it(monkeypatch, capsys, is_quiet
     with console.Progress("dive.avi", 4, "frame", is_quiet) as progress:
         progress.advance()
         progress.print_line("a result")
+        progress.say("a message")
         shown = sys.stderr.getvalue()
     monkeypatch.undo()
     assert ("dive.avi" in shown) is not is_quiet
+    assert "lightgesture: a message\n" in shown
     assert capsys.readouterr().out == "a result\n"
     with console.Progress("dive.avi", 4, "frame", quiet=False) as progress:
         progress.advance()

@@ -18,12 +18,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Decode the inputs; 0 when all were, 1 when some failed."""
+    from lightgesture.console import native_messages_muted
+    from lightgesture.decoding import decode
     from lightgesture.settings import load_settings
     from lightgesture.sources import expand_inputs
 
     settings = load_settings(args)
-    from lightgesture.console import native_messages_muted
-    from lightgesture.decoding import decode
-
     with native_messages_muted():
         return decode(expand_inputs(args.inputs), settings)

@@ -13,7 +13,6 @@ from lightgesture.benchmarks.datasets import (
     group_samples,
     read_frames,
     read_hands,
-    read_image,
     read_negatives,
     read_webcam,
 )
@@ -38,6 +37,7 @@ from lightgesture.benchmarks.regions import (
 )
 from lightgesture.benchmarks.scorer import Label, Reading
 from lightgesture.benchmarks.tables import Table
+from lightgesture.sources import read_picture
 
 HANDS = "hands"
 REGIONS = "regions"
@@ -138,7 +138,7 @@ def _frame_samples(data: Path) -> list[Sample]:
 
 
 def _tile(failure: Failure) -> Image:
-    return draw_tile(read_image(failure.path), failure.labels, failure.readings, failure.caption)
+    return draw_tile(read_picture(failure.path), failure.labels, failure.readings, failure.caption)
 
 
 def _hand_failures(answers: Iterable[HandAnswer]) -> list[Failure]:

@@ -14,15 +14,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.benchmarks.scorer import Box, Label
 from lightgesture.errors import InputError
-
-Image = NDArray[np.uint8]
-"""uint8 (height, width, 3), BGR."""
 
 DATA_FOLDER = Path("shared") / "data"
 """Where the data lie beside the checkout, or beside the current directory."""
@@ -83,18 +79,6 @@ def read_table(data: Path, name: str) -> list[dict[str, str]]:
     if not rows:
         raise InputError(f"{path}: holds no rows; --data must name a complete data folder")
     return rows
-
-
-def read_image(path: Path) -> Image:
-    """Decode a picture to BGR; any file name that the system can open will do."""
-    try:
-        content = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); restore it or drop its row") from error
-    image = cv2.imdecode(content, cv2.IMREAD_COLOR) if content.size else None
-    if image is None:
-        raise InputError(f"{path}: is no picture that OpenCV reads; restore it or drop its row")
-    return np.asarray(image, dtype=np.uint8)
 
 
 def grow_box(x0: float, y0: float, x1: float, y1: float, margin: float) -> Box:

@@ -14,7 +14,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.datasets import read_image, read_landmarks, read_table
+from lightgesture.benchmarks.datasets import read_landmarks, read_table
+from lightgesture.sources import read_picture
 
 Moments = NDArray[np.float64]
 Contour = NDArray[np.int32]
@@ -144,7 +145,7 @@ def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
 
 
 def _cut_out_contour(data: Path, row: dict[str, str], settings: BankSettings) -> Contour | None:
-    image = read_image(data / "hands" / row["path"])
+    image = read_picture(data / "hands" / row["path"])
     return largest_contour((image.max(axis=2) > settings.black_level).astype(np.uint8))
 
 

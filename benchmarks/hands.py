@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.datasets import Sample, read_image
+from lightgesture.benchmarks.datasets import Sample
 from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import (
     Label,
@@ -25,6 +25,7 @@ from lightgesture.benchmarks.scorer import (
     worst,
 )
 from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.sources import read_picture
 
 UNSIDED = "left"
 """Side that a hand of unknown side is read as: it is not mirrored, as crops are not."""
@@ -61,7 +62,7 @@ def classify(classifier: Classifier, samples: Iterable[Sample]) -> list[HandAnsw
         labels = [label for label in sample.labels if label.token is not None]
         if labels:
             probabilities = classifier.probabilities(
-                read_image(sample.path),
+                read_picture(sample.path),
                 [label.box for label in labels],
                 [label.side or UNSIDED for label in labels],
             )

@@ -7,7 +7,7 @@ before it ("sequence"). At most two boxes a frame count.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from lightgesture.benchmarks.datasets import Sample, group_samples, is_sequence, read_image
+from lightgesture.benchmarks.datasets import Sample, group_samples, is_sequence
 from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.scorer import (
     Reading,
@@ -19,6 +19,7 @@ from lightgesture.benchmarks.scorer import (
     total,
 )
 from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.sources import read_picture
 
 MAX_BOXES = 2
 """A diver has two hands; a method may not win by guessing more boxes."""
@@ -91,7 +92,7 @@ def run_methods(methods: Sequence[Method], samples: Sequence[Sample], progress: 
 
 def run_single(method: Method, group: str, samples: Iterable[Sample]) -> Run:
     """Read every picture alone."""
-    answers = [_answer(sample, method.read(read_image(sample.path))) for sample in samples]
+    answers = [_answer(sample, method.read(read_picture(sample.path))) for sample in samples]
     return Run(method.name, group, SINGLE, None, tuple(answers), None)
 
 
@@ -100,7 +101,7 @@ def run_sequence(method: Method, group: str, samples: Iterable[Sample]) -> Run:
     hold = SCRIPTS[group].hold if group in SCRIPTS else None
     stream = method.stream(hold)
     answers = [
-        _answer(sample, stream.process(read_image(sample.path), index / FRAME_RATE))
+        _answer(sample, stream.process(read_picture(sample.path), index / FRAME_RATE))
         for index, sample in enumerate(samples)
     ]
     return Run(method.name, group, SEQUENCE, hold, tuple(answers), stream.finish())

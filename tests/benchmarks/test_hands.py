@@ -10,6 +10,7 @@ from lightgesture.benchmarks.hands import (
     confusion_table,
     summary_table,
 )
+from lightgesture.errors import InputError
 
 
 def test_boxes_and_sides_reach_the_classifier(data, fake_classifier):
@@ -70,3 +71,12 @@ def test_tables_per_token_source_and_pair(data, fake_classifier):
 @pytest.mark.parametrize("index", [0, 1])
 def test_failure_is_a_token_read_as_another(data, fake_classifier, index):
     assert classify(fake_classifier, read_hands(data))[index].failed is (index == 1)
+
+
+def test_broken_picture_is_named_in_one_line(data, fake_classifier):
+    """A figure over fewer pictures than the table names would be another figure, so nothing is skipped."""
+    samples = read_hands(data)
+    samples[1].path.write_bytes(b"no picture")
+    with pytest.raises(InputError, match=r"2\.png: is no picture") as error:
+        classify(fake_classifier, samples)
+    assert "\n" not in str(error.value)

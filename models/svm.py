@@ -1,0 +1,80 @@
+"""A support vector machine with a radial kernel over few expansion vectors, in NumPy alone.
+
+A patch's feature vector x is projected, z = P (x - mean), and class k scores
+f_k = sum_j a_jk exp(-gamma |z - c_j|²) + b_k: one machine a class against all others. Probabilities are the softmax
+of f / temperature (Guo, Pleiss, Sun and Weinberger, "On Calibration of Modern Neural Networks", ICML 2017).
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.patch import cut_patches
+from lightgesture.features.types import Box
+from lightgesture.features.vector import feature_vectors
+from lightgesture.models.samples import NONE
+from lightgesture.models.store import SvmModel, read_model
+
+Float = NDArray[np.float32]
+
+
+def radial_kernel(points: Float, centres: Float, gamma: float) -> Float:
+    """exp(-gamma |z - c|²) of every one of `points` (n, p) with every one of `centres` (m, p), float32 (n, m)."""
+    squared = points @ centres.T
+    squared *= np.float32(-2.0)
+    squared += (points * points).sum(axis=1)[:, None]
+    squared += (centres * centres).sum(axis=1)
+    # Rounding can leave a tiny negative distance.
+    np.maximum(squared, np.float32(0.0), out=squared)
+    squared *= np.float32(-gamma)
+    return np.exp(squared, out=squared)
+
+
+def softmax(scores: Float, temperature: float) -> Float:
+    """Probabilities from scores (n, k), float32 (n, k)."""
+    scaled = scores / np.float32(temperature)
+    powers = np.exp(scaled - scaled.max(axis=1, keepdims=True))
+    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
+
+
+class SvmClassifier:
+    """Feature vectors of patches -> probabilities of classes."""
+
+    def __init__(self, model: SvmModel) -> None:
+        self.model = model
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the columns of `probabilities`."""
+        return self.model.classes
+
+    def project(self, vectors: Float) -> Float:
+        """Feature vectors (n, d) in the kernel's space, float32 (n, p)."""
+        return (vectors - self.model.mean) @ self.model.projection
+
+    def scores(self, vectors: Float) -> Float:
+        """Decision values of feature vectors (n, d), float32 (n, k)."""
+        model = self.model
+        kernel = radial_kernel(self.project(vectors), model.centres, model.gamma)
+        return kernel @ model.weights + model.bias
+
+    def probabilities(
+        self, image_bgr: NDArray[np.uint8], boxes: Sequence[Box], sides: Sequence[str]
+    ) -> Float:
+        """Calibrated probabilities, float32 (n, k), rows sum to 1; see `Classifier`."""
+        model = self.model
+        patches = cut_patches(image_bgr, boxes, sides, model.features.patch)
+        if not len(patches):
+            return np.empty((0, len(model.classes)), np.float32)
+        probabilities = softmax(self.scores(feature_vectors(patches, model.features)), model.temperature)
+        if NONE in model.classes:
+            too_small = [max(box[2], box[3]) < model.smallest_hand for box in boxes]
+            probabilities[too_small] = np.eye(len(model.classes), dtype=np.float32)[model.classes.index(NONE)]
+        return probabilities
+
+
+def read_svm(path: Path) -> SvmClassifier:
+    """Read a model file; raises ModelError naming the file and what is wrong with it."""
+    return SvmClassifier(read_model(path))

@@ -1,0 +1,160 @@
+"""Light on a canvas of round cones: soft normals, occlusion, shadow, skin reflectance.
+
+All arithmetic is in linear light. Occlusion in the gaps between fingers is the unsharp mask of the depth buffer
+(Luft, Colditz & Deussen, "Image enhancement by unsharp masking the depth buffer", ACM TOG 25(3), 2006). The red
+glow at the edge of shadow is wrap lighting with a wider wrap for red, the usual cheap stand-in for subsurface
+scattering (Green, "Real-time approximations to subsurface scattering", GPU Gems, 2004, ch. 16).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.synth.raster import LAYOUT, Canvas, Float32
+from lightgesture.synth.skin import BLOOD_DENSITY_BGR, Tone, smoothstep, unpack_texture
+from lightgesture.synth.surface import FOREARM, HAND, SLEEVE
+
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """Illumination in image axes (x right, y down, z towards the camera), linear light, BGR.
+
+    direction: towards the light, any length. key: its colour. sky / ground: ambient from above / below.
+    shadow: 0 none .. 1 full darkness in cast shadows (water and overcast sky scatter, so rarely above 0.7).
+    """
+
+    direction: tuple[float, float, float] = (-0.3, -0.7, 0.65)
+    key: tuple[float, float, float] = (0.75, 0.75, 0.75)
+    sky: tuple[float, float, float] = (0.38, 0.38, 0.38)
+    ground: tuple[float, float, float] = (0.2, 0.2, 0.2)
+    shadow: float = 0.55
+
+
+@dataclass(frozen=True, slots=True)
+class ShadingSettings:
+    """Constants of the skin's response; lengths in millimetres.
+
+    wrap_bgr: how far diffuse light wraps beyond the terminator. smooth_mm: flesh smoothing of palm and forearm.
+    occlusion_mm / occlusion_per_mm: radius of the depth blur and darkening per millimetre below it.
+    shadow_steps, shadow_step_mm: reach of cast shadows. shininess: exponent of the highlight.
+    """
+
+    wrap_bgr: tuple[float, float, float] = (0.12, 0.2, 0.45)
+    smooth_mm: float = 3.2
+    occlusion_mm: tuple[float, float] = (3.5, 11.0)
+    occlusion_per_mm: tuple[float, float] = (0.13, 0.03)
+    occlusion_bgr: tuple[float, float, float] = (1.15, 1.1, 0.85)
+    shadow_steps: int = 5
+    shadow_step_mm: float = 5.0
+    shininess: float = 22.0
+    gloss_skin: float = 0.16
+    gloss_nail: float = 0.45
+
+
+SETTINGS = ShadingSettings()
+
+
+def soften(canvas: Canvas, mask: Mask, sigma: float) -> None:
+    """Replace the normals inside `mask` by those of the smoothed height (in place); outlines keep their own.
+
+    Palm and forearm are unions of cones whose edges would show; flesh has none.
+    """
+    weight = mask.astype(np.float32)
+    spread = np.asarray(cv2.GaussianBlur(weight, (0, 0), sigma), np.float32)
+    smooth = np.asarray(
+        cv2.GaussianBlur(np.where(mask, canvas.height, np.float32(0.0)), (0, 0), sigma), np.float32
+    )
+    smooth /= np.maximum(spread, np.float32(1e-3))
+    dx = cv2.Sobel(smooth, cv2.CV_32F, 1, 0, ksize=3, scale=0.125)
+    dy = cv2.Sobel(smooth, cv2.CV_32F, 0, 1, ksize=3, scale=0.125)
+    inverse = 1.0 / np.sqrt(1.0 + dx * dx + dy * dy)
+    share = np.clip(2.0 * spread - 1.0, 0.0, 1.0) * weight
+    share = np.sqrt(share)
+    for axis, value in enumerate((-dx * inverse, -dy * inverse, inverse)):
+        canvas.normal[axis] += share * (value - canvas.normal[axis])
+
+
+def occlusion(height: Float32, mask: Mask, px_per_mm: float, settings: ShadingSettings = SETTINGS) -> Float32:
+    """Darkening 0..1 of points that lie below their surroundings."""
+    weight = mask.astype(np.float32)
+    depth = np.where(mask, height, np.float32(0.0))
+    dark = np.zeros_like(height)
+    for radius, strength in zip(settings.occlusion_mm, settings.occlusion_per_mm, strict=True):
+        size = (2 * int(radius * px_per_mm) + 1,) * 2
+        mean = cv2.blur(cv2.blur(depth, size), size) / np.maximum(
+            cv2.blur(cv2.blur(weight, size), size), 1e-3
+        )
+        dark += np.float32(strength / px_per_mm) * np.maximum(mean - height, 0.0)
+    return np.asarray(np.clip(dark, 0.0, 0.85) * weight, np.float32)
+
+
+def cast_shadow(
+    height: Float32, light: Light, px_per_mm: float, settings: ShadingSettings = SETTINGS
+) -> Float32:
+    """Soft shadow 0..1 by marching the height field towards the light."""
+    lx, ly, lz = np.array(light.direction) / np.linalg.norm(light.direction)
+    shadow = np.zeros_like(height)
+    rows, columns = height.shape
+    for step in range(1, settings.shadow_steps + 1):
+        reach = step * settings.shadow_step_mm * px_per_mm
+        move = np.array([[1.0, 0.0, -lx * reach], [0.0, 1.0, -ly * reach]], np.float32)
+        blocker = cv2.warpAffine(height, move, (columns, rows), flags=cv2.INTER_NEAREST, borderValue=-1e4)
+        excess = (blocker - height - np.float32(lz * reach)) * np.float32(1.0 / (4.0 * px_per_mm))
+        np.maximum(shadow, np.clip(excess, 0.0, 1.0), out=shadow)
+    return np.asarray(cv2.blur(shadow, (3, 3)), np.float32)
+
+
+def albedo(
+    canvas: Canvas, atlas: NDArray[np.uint8], tone: Tone, sleeve_bgr: Float32
+) -> tuple[Float32, Float32]:
+    """Reflectance (h, w, 3) and gloss (h, w) of every pixel."""
+    texture = np.asarray(cv2.remap(atlas, canvas.atlas[0], canvas.atlas[1], cv2.INTER_LINEAR), np.uint8)
+    factor, palm, blood, nail = unpack_texture(texture)
+    palm = palm * smoothstep(-0.45, 0.45, canvas.palmar)
+    colour = tone.back + palm[..., None] * (tone.palm - tone.back)
+    if not tone.glove:
+        colour *= np.exp(blood[..., None] * np.float32(-1.0) * BLOOD_DENSITY_BGR.astype(np.float32))
+    colour += nail[..., None] * (tone.nail - colour)
+    sleeve = canvas.material == SLEEVE
+    colour[sleeve] = sleeve_bgr
+    colour *= factor[..., None]
+    gloss = SETTINGS.gloss_skin * tone.gloss * (1.0 - 0.3 * palm) + SETTINGS.gloss_nail * tone.gloss * nail
+    gloss[sleeve] = 0.02
+    return colour, gloss
+
+
+def shade(canvas: Canvas, colour: Float32, gloss: Float32, light: Light, px_per_mm: float) -> Float32:
+    """Radiance (h, w, 3), linear BGR, of everything on the canvas."""
+    mask = canvas.material > 0
+    soft_skin = (canvas.atlas[1] < LAYOUT.palm_height) & (canvas.material == HAND) | (
+        canvas.material == FOREARM
+    )
+    soften(canvas, soft_skin, SETTINGS.smooth_mm * px_per_mm)
+    if np.any(canvas.material == SLEEVE):
+        soften(canvas, canvas.material == SLEEVE, SETTINGS.smooth_mm * px_per_mm)
+    nx, ny, nz = canvas.normal
+    lx, ly, lz = (np.array(light.direction) / np.linalg.norm(light.direction)).astype(np.float32)
+    lit = nx * lx + ny * ly + nz * lz
+    open_sky = 1.0 - occlusion(canvas.height, mask, px_per_mm)
+    reach = 1.0 - np.float32(light.shadow) * cast_shadow(canvas.height, light, px_per_mm)
+    up = np.clip(0.5 - 0.5 * ny, 0.0, 1.0)
+    half = np.array([lx, ly, lz + 1.0]) / np.linalg.norm([lx, ly, lz + 1.0])
+    facing = np.clip(nx * half[0] + ny * half[1] + nz * half[2], 0.0, 1.0)
+    highlight = gloss * facing ** np.float32(SETTINGS.shininess) * reach * open_sky
+    radiance = np.empty_like(colour)
+    for channel in range(3):
+        wrap = SETTINGS.wrap_bgr[channel]
+        diffuse = np.clip((lit + np.float32(wrap)) * np.float32(1.0 / (1.0 + wrap)), 0.0, 1.0) * reach
+        ambient = np.float32(light.ground[channel]) + up * np.float32(
+            light.sky[channel] - light.ground[channel]
+        )
+        shadowed = np.power(open_sky, np.float32(SETTINGS.occlusion_bgr[channel]))
+        total = (diffuse * np.float32(light.key[channel]) + ambient) * shadowed
+        radiance[..., channel] = colour[..., channel] * total + highlight * np.float32(light.key[channel])
+    return radiance

@@ -61,7 +61,7 @@ def _cell_means(stack: Float, boxes: NDArray[np.int32], settings: CellSettings) 
     corners = integrals[:, rows[:, :, None], columns[:, None, :]].transpose(1, 0, 2, 3)
     sums = np.diff(np.diff(corners, axis=2), axis=3)
     areas = np.diff(rows, axis=1)[:, :, None] * np.diff(columns, axis=1)[:, None, :]
-    return (sums / np.maximum(areas, 1)[:, None]).astype(np.float32)
+    return np.asarray(sums / np.maximum(areas, 1)[:, None], np.float32)
 
 
 def _shapes(proposals: Proposals, size: tuple[int, int]) -> Float:

@@ -87,13 +87,13 @@ def gray_world(bgr: Float) -> Float:
     """Scale each channel to the common mean (Buchsbaum, "A spatial processor model for object colour
     perception", 1980); values are clipped to 1."""
     means = bgr.reshape(-1, 3).mean(axis=0)
-    return np.minimum(bgr * (means.mean() / np.maximum(means, 1e-3)), np.float32(1.0))
+    return np.asarray(np.minimum(bgr * (means.mean() / np.maximum(means, 1e-3)), 1.0), np.float32)
 
 
 def redness(bgr: Float, exponent: float, yellow_weight: float) -> Float:
     """Opponent colour R^e - G^e + w (G^e - B^e): a stand-in for a* + 0.3 b* without CIELAB."""
     blue, green, red = np.moveaxis(np.power(bgr, exponent), -1, 0)
-    return (red - green) + yellow_weight * (green - blue)
+    return np.asarray((red - green) + yellow_weight * (green - blue), np.float32)
 
 
 def stretch(values: Float, low_percentile: float, high_percentile: float) -> Image:
@@ -101,7 +101,7 @@ def stretch(values: Float, low_percentile: float, high_percentile: float) -> Ima
     low, high = np.percentile(values, [low_percentile, high_percentile])
     if high - low < 1e-4:
         return np.zeros(values.shape, np.uint8)
-    return np.clip((values - low) * (255.0 / (high - low)), 0, 255).astype(np.uint8)
+    return np.asarray(np.clip((values - low) * (255.0 / (high - low)), 0, 255), np.uint8)
 
 
 class ColourStage:
@@ -117,7 +117,7 @@ class ColourStage:
         bgr = picture.astype(np.float32) * np.float32(1 / 255)
         bgr = gray_world(compensate_red(bgr, settings.red_compensation))
         opponent = redness(bgr, settings.exponent, settings.yellow_weight)
-        opponent = cv2.GaussianBlur(opponent, (3, 3), 0)
+        opponent = np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32)
         skin = stretch(opponent, settings.low_percentile, settings.high_percentile)
         height, width = image.shape[:2]
         scale = width / picture.shape[1], height / picture.shape[0]

@@ -32,7 +32,7 @@ class ProposalSettings:
     """
 
     levels: int = 32
-    smallest_side: float = 0.06
+    smallest_side: float = 0.045
     largest_side: float = 0.85
     shortest_contour: int = 16
     largest_aspect: float = 3.5

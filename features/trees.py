@@ -26,14 +26,18 @@ class Trees:
     def check(self, columns: int) -> None:
         """Refuse arrays that would read outside themselves or give no number. Raises ValueError."""
         shape = self.feature.shape
-        if len(shape) != 2 or any(a.shape != shape for a in (self.threshold, self.left, self.right, self.value)):
+        if len(shape) != 2 or any(
+            a.shape != shape for a in (self.threshold, self.left, self.right, self.value)
+        ):
             raise ValueError("the arrays of the trees have different shapes")
         for child in (self.left, self.right):
             if child.size and (child.min() < 0 or child.max() >= shape[1]):
                 raise ValueError("a tree points outside its nodes")
         if self.feature.size and (self.feature.min() < -1 or self.feature.max() >= columns):
             raise ValueError("a tree asks for a column that there is not")
-        if not (np.isfinite(self.threshold).all() and np.isfinite(self.value).all() and np.isfinite(self.base)):
+        if not (
+            np.isfinite(self.threshold).all() and np.isfinite(self.value).all() and np.isfinite(self.base)
+        ):
             raise ValueError("a tree holds values that are not finite")
         if not 0 <= self.depth <= 64:
             raise ValueError("the depth of the trees must be 0 to 64")
@@ -49,4 +53,4 @@ def evaluate(trees: Trees, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         column = trees.feature[tree, node]
         goes_left = rows[row, column] <= trees.threshold[tree, node]
         node = np.where(goes_left, trees.left[tree, node], trees.right[tree, node])
-    return (trees.base + trees.value[tree, node].sum(axis=1)).astype(np.float32)
+    return np.asarray(trees.base + trees.value[tree, node].sum(axis=1), np.float32)

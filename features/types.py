@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,16 +23,37 @@ class HandRegion:
 
     box: outline of the region without the forearm, source pixels.
     contour: int32 (n, 2), closed outline in source pixels.
-    mask: bool (box height, box width), True on the region's own pixels.
     side: the diver's own side, or None before the sides are decided.
     confidence: 0 to 1, how sure the selector is that this is a hand.
     """
 
     box: Box
     contour: NDArray[np.int32]
-    mask: NDArray[np.bool_]
     side: Side | None
     confidence: float
+
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """bool (box height, box width), True inside the outline; drawn at each call."""
+        x, y, width, height = self.box
+        mask = np.zeros((height, width), np.uint8)
+        cv2.drawContours(mask, [self.contour.reshape(-1, 1, 2)], -1, 1, cv2.FILLED, offset=(-x, -y))
+        return mask.astype(bool)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidates:
+    """The regions of one frame that may be hands, and how well each two of them go together.
+
+    regions: best first, at most a handful, sides not yet decided.
+    pairs: float32 (n, n), symmetric, 0 to 1: how sure the selector is that both are the hands of one
+        person; 0 on the diagonal and for regions that overlap.
+    source_size: (width, height) of the frame, pixels.
+    """
+
+    regions: tuple[HandRegion, ...]
+    pairs: NDArray[np.float32]
+    source_size: tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,14 +62,13 @@ class Track:
 
     number: grows by one at each birth, never used twice in a stream.
     side: the diver's own side, kept for the life of the track.
-    box: filtered position and size, source pixels.
+    box: position and size, source pixels: the region's own where it was seen, predicted where not.
     confidence: the selector's confidence in the region that last updated the track, 0 to 1.
-    age: frames since birth. missed: frames since the last matching region, 0 when seen now.
+    missed: frames since the last matching region, 0 when seen now.
     """
 
     number: int
     side: Side
     box: Box
     confidence: float
-    age: int
     missed: int

@@ -42,9 +42,7 @@ def palm_circle(mask: Image) -> tuple[tuple[int, int], float]:
     return (centre[0], centre[1]), radius
 
 
-def cut_forearm(
-    contour: NDArray[np.int32], box: Box, settings: WristSettings
-) -> NDArray[np.int32] | None:
+def cut_forearm(contour: NDArray[np.int32], box: Box, settings: WristSettings) -> NDArray[np.int32] | None:
     """The outline above the wrist, int32 (k, 2); None where the region ends at the wrist already."""
     mask = fill_contour(contour, box, border=1)
     (_, centre_y), radius = palm_circle(mask)
@@ -55,4 +53,4 @@ def cut_forearm(
     mask[bottom:] = 0
     parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     largest = max(parts, key=cv2.contourArea)
-    return (largest.reshape(-1, 2) + (box[0] - 1, box[1] - 1)).astype(np.int32)
+    return (largest.reshape(-1, 2) + np.array([box[0] - 1, box[1] - 1])).astype(np.int32)

@@ -1,0 +1,180 @@
+"""Frames in, records out: the stages in their order, with a time stamp around each."""
+
+import os
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from statistics import median, quantiles
+
+import numpy as np
+
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.geometry import mirror_box
+from lightgesture.features.selector import RegionStage, choose
+from lightgesture.features.tracks import TrackStage
+from lightgesture.features.types import Image
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
+from lightgesture.models import load_classifier
+from lightgesture.reading import ReadingStage, Sighting
+from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
+from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
+
+STAGES = ("colour", "regions", "tracks", "classify", "decode")
+
+
+class StageClock:
+    """Milliseconds of each stage and of each frame, kept for the summary."""
+
+    def __init__(self) -> None:
+        self._stages: dict[str, list[float]] = defaultdict(list)
+        self._frames: list[float] = []
+        self._current = 0.0
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time one stage of the current frame."""
+        start = time.perf_counter()
+        yield
+        spent = (time.perf_counter() - start) * 1e3
+        self._stages[name].append(spent)
+        self._current += spent
+
+    def end_frame(self) -> None:
+        """Close the current frame: its time is the sum of its stages."""
+        self._frames.append(self._current)
+        self._current = 0.0
+
+    def per_frame(self) -> dict[str, float]:
+        """Median and 95th percentile, milliseconds a frame; zeros before the first."""
+        if not self._frames:
+            return {"median": 0.0, "p95": 0.0}
+        p95 = quantiles(self._frames, n=20)[-1] if len(self._frames) > 1 else self._frames[0]
+        return {"median": round(median(self._frames), 3), "p95": round(p95, 3)}
+
+    def per_stage(self) -> dict[str, float]:
+        """Median milliseconds of each stage in the order of the pipeline."""
+        return {name: round(median(self._stages[name]), 4) for name in STAGES if self._stages[name]}
+
+
+class Pipeline:
+    """Decodes one stream of frames; make another for another stream.
+
+    model: "svm", "cnn" or the path of a model file. hold: consecutive frames that a sign is held, None for the
+    grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
+    selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
+    picture of every stage of every frame.
+    Raises lightgesture.models.ModelError, lightgesture.fsm.GrammarError or ValueError: one line each.
+    """
+
+    def __init__(
+        self,
+        *,
+        model: str | os.PathLike[str] = "svm",
+        hold: int | None = None,
+        grammar: str | os.PathLike[str] | None = None,
+        mirrored: bool = False,
+        source: str | None = None,
+        frames: bool = True,
+        debug: PictureSink | None = None,
+    ) -> None:
+        self._source, self._frames, self._mirrored, self._debug = source, frames, mirrored, debug
+        self._colour, self._regions, self._tracks = ColourStage(), RegionStage(), TrackStage()
+        self._reading = ReadingStage(load_classifier(model))
+        self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
+        self._clock = StageClock()
+        self._index = 0
+        self._seconds = 0.0
+        self._counts = {Instruction: 0, Rejected: 0}
+
+    def process(self, image_bgr: Image, time_s: float, index: int | None = None) -> list[Record]:
+        """Records of the next frame: its frame record, then what it led to.
+
+        image_bgr: uint8 (height, width, 3), BGR; another size than before ends the tracks. time_s: seconds since
+        the start of the stream. index: position in the source, by default counted.
+        """
+        index = self._index if index is None else index
+        upright = self._upright(image_bgr)
+        with self._clock.stage("colour"):
+            colour = self._colour.process(upright)
+        with self._clock.stage("regions"):
+            candidates = self._regions.process(colour)
+        with self._clock.stage("tracks"):
+            tracks = self._tracks.process(candidates, time_s)
+        with self._clock.stage("classify"):
+            sightings = [Sighting(track.side, track.box, track.number) for track in tracks]
+            hands = self._reading.process(upright, sightings)
+        with self._clock.stage("decode"):
+            events = self._decode(hands, time_s, index)
+        self._clock.end_frame()
+        self._index, self._seconds = index + 1, time_s
+        if self._debug is not None:
+            self._debug.write("colour", index, draw_colour(colour))
+            self._debug.write("regions", index, draw_regions(upright, candidates))
+            self._debug.write("tracks", index, draw_tracks(upright, tracks))
+            self._debug.write("classify", index, draw_hands(upright, hands))
+            self._debug.write("decode", index, draw_hands(upright, hands, self._decoder.sentence or "idle"))
+        records: list[Record] = []
+        if self._frames:
+            records.append(self._frame_record(hands, index, time_s, image_bgr.shape[1]))
+        return records + self._count(events)
+
+    def finish(self) -> list[Record]:
+        """What is pending at the end of the stream, then the summary."""
+        pending = self._count(self._decoder.finish())
+        summary = SummaryRecord(
+            source=self._source,
+            frames=self._index,
+            seconds=round(self._seconds, 6),
+            instructions=self._counts[Instruction],
+            rejected=self._counts[Rejected],
+            status="ok",
+            ms_per_frame=self._clock.per_frame(),
+            stages_ms=self._clock.per_stage(),
+        )
+        return [*pending, summary]
+
+    def recognize(self, image_bgr: Image) -> FrameRecord:
+        """The hands of a single picture, without memory: `frame` and `time_s` are None."""
+        upright = self._upright(image_bgr)
+        colour = self._colour.process(upright)
+        candidates = self._regions.process(colour)
+        settings = self._regions.settings
+        chosen = choose(candidates, settings)
+        certainty = settings.alone_confidence if len(chosen) == 1 else 1.0
+        sightings = [Sighting(region.side or "right", region.box, None, certainty) for region in chosen]
+        hands = self._reading.process(upright, sightings)
+        if self._debug is not None:
+            self._debug.write("colour", 0, draw_colour(colour))
+            self._debug.write("regions", 0, draw_regions(upright, candidates))
+            self._debug.write("classify", 0, draw_hands(upright, hands))
+        return self._frame_record(hands, None, None, image_bgr.shape[1])
+
+    def _upright(self, image: Image) -> Image:
+        return np.ascontiguousarray(image[:, ::-1]) if self._mirrored else image
+
+    def _decode(self, hands: tuple[Hand, ...], time_s: float, index: int) -> list[Event]:
+        read = {hand.side: hand for hand in hands}
+        left, right = read.get("left"), read.get("right")
+        return self._decoder.step(
+            left=left.token if left else None,
+            right=right.token if right else None,
+            time_s=time_s,
+            left_confidence=left.confidence if left else 1.0,
+            right_confidence=right.confidence if right else 1.0,
+            frame=index,
+        )
+
+    def _frame_record(
+        self, hands: tuple[Hand, ...], index: int | None, time_s: float | None, width: int
+    ) -> FrameRecord:
+        if self._mirrored:
+            hands = tuple(replace(hand, box=mirror_box(hand.box, width)) for hand in hands)
+        return FrameRecord(source=self._source, frame=index, time_s=time_s, hands=hands)
+
+    def _count(self, events: list[Event]) -> list[Record]:
+        for event in events:
+            if type(event) in self._counts:
+                self._counts[type(event)] += 1
+        return list(events)

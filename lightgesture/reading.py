@@ -1,0 +1,93 @@
+"""From probabilities to tokens, with refusal: rather no token than a wrong one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.types import Box, Image, Side
+from lightgesture.models import NONE, Classifier
+from lightgesture.records import Hand
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingSettings:
+    """When a hand gets a token.
+
+    token_probability: least calibrated probability of the best token, 0 to 1. Higher refuses more and reads fewer
+        wrong; what stays below is `low_confidence`.
+    edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
+        classifier is not sure.
+    """
+
+    token_probability: float = 0.5
+    edge_share: float = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """A hand to be read. box: source pixels. track: number, None in single pictures.
+    certainty: factor on the confidence, 1 where the side is known."""
+
+    side: Side
+    box: Box
+    track: int | None
+    certainty: float = 1.0
+
+
+def _touches_edge(box: Box, size: tuple[int, int], share: float) -> bool:
+    x, y, width, height = box
+    margin_x, margin_y = share * width, share * height
+    return (
+        x <= margin_x or y <= margin_y or x + width >= size[0] - margin_x or y + height >= size[1] - margin_y
+    )
+
+
+def read_token(
+    probabilities: NDArray[np.float32], classes: Sequence[str], at_edge: bool, settings: ReadingSettings
+) -> tuple[str | None, float, str | None]:
+    """Token, confidence and reason of one hand from its row of probabilities (classes,).
+
+    The token is None where `none` is most likely ("unknown_shape") or no token likely enough
+    ("partial" at the picture's edge, else "low_confidence").
+    """
+    best = int(np.argmax(probabilities))
+    confidence = float(probabilities[best])
+    if classes[best] == NONE:
+        return None, confidence, "unknown_shape"
+    if confidence < settings.token_probability:
+        return None, confidence, "partial" if at_edge else "low_confidence"
+    return classes[best], confidence, None
+
+
+class ReadingStage:
+    """Sightings of a frame -> hands with tokens."""
+
+    def __init__(self, classifier: Classifier, settings: ReadingSettings | None = None) -> None:
+        self._classifier = classifier
+        self._settings = settings or ReadingSettings()
+
+    def process(self, image: Image, sightings: Sequence[Sighting]) -> tuple[Hand, ...]:
+        """Read every sighting in one BGR frame, the diver's right hand first."""
+        if not sightings:
+            return ()
+        rows = self._classifier.probabilities(
+            image, [item.box for item in sightings], [item.side for item in sightings]
+        )
+        size = image.shape[1], image.shape[0]
+        hands = []
+        for item, row in zip(sightings, rows, strict=True):
+            at_edge = _touches_edge(item.box, size, self._settings.edge_share)
+            token, confidence, reason = read_token(row, self._classifier.classes, at_edge, self._settings)
+            hands.append(
+                Hand(
+                    side=item.side,
+                    token=token,
+                    confidence=round(confidence * item.certainty, 4),
+                    box=item.box,
+                    track=item.track,
+                    reason=reason,
+                )
+            )
+        return tuple(hands)

@@ -1,0 +1,1 @@
+"""Training data from real pictures: never imported on the decode path."""

@@ -1,0 +1,139 @@
+"""The latency benchmark: what it counts, and that it leaves OpenCV as it found it."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.benchmarks import latency
+from lightgesture.benchmarks.latency import (
+    FRAME,
+    PAPER,
+    SINGLE,
+    LatencySettings,
+    RecordingClock,
+    measure,
+    opencv_threads,
+    read_clips,
+    time_calls,
+)
+
+QUICK = LatencySettings(rounds=2, warm_up=3)
+
+
+class FakePipeline:
+    """Two stages a frame, timed by the real clock."""
+
+    def __init__(self, model):
+        assert model == "svm"
+        self.restart_clock()
+        self.threads = set()
+
+    def restart_clock(self):
+        self.clock = RecordingClock()
+
+    def process(self, image, time_s):
+        assert image.shape == (480, 640, 3)
+        for stage in ("colour", "tracks"):
+            with self.clock.stage(stage):
+                self.last = time_s
+        self.threads.add(cv2.getNumThreads())
+
+    def recognize(self, image):
+        return image
+
+
+class FakeChain:
+    def process(self, image):
+        return image
+
+
+@pytest.fixture
+def fake_pipelines(monkeypatch):
+    made = []
+
+    def make(model):
+        made.append(FakePipeline(model))
+        return made[-1]
+
+    monkeypatch.setattr(latency, "TimedPipeline", make)
+    return made
+
+
+@pytest.fixture
+def no_sample(monkeypatch, tmp_path):
+    monkeypatch.setattr(latency, "SAMPLE", tmp_path / "sample.mp4")
+
+
+def test_warm_up_is_run_but_not_counted():
+    seen = []
+    frames = [np.zeros((2, 2, 3), np.uint8)] * 2
+    assert len(time_calls(seen.append, frames, QUICK)) == 4
+    assert len(seen) == 7
+
+
+def test_a_row_per_clip_threads_and_stage(fake_pipelines):
+    frames = [np.zeros((480, 640, 3), np.uint8)] * 5
+    rows = measure({"clip": frames}, "svm", FakeChain, QUICK)
+    stages = ["colour", "tracks", FRAME, SINGLE, PAPER]
+    assert [(row["threads"], row["stage"]) for row in rows] == [
+        (n, stage) for n in (1, 2) for stage in stages
+    ]
+    assert {row["calls"] for row in rows} == {10}
+    assert all(0 <= row["median_ms"] <= row["p95_ms"] for row in rows)
+    assert [pipeline.threads for pipeline in fake_pipelines] == [{1}, {2}]
+
+
+def test_time_goes_on_from_round_to_round(fake_pipelines):
+    measure({"clip": [np.zeros((480, 640, 3), np.uint8)] * 2}, "svm", None, QUICK)
+    assert fake_pipelines[0].last == pytest.approx(6 / 30)
+
+
+def test_opencv_threads_are_restored_even_after_an_error():
+    before = cv2.getNumThreads()
+    with pytest.raises(ZeroDivisionError), opencv_threads(1):
+        assert cv2.getNumThreads() == 1
+        raise ZeroDivisionError
+    assert cv2.getNumThreads() == before
+
+
+def test_clips_are_scaled_to_one_size(data, no_sample):
+    clips = read_clips(data, QUICK)
+    assert list(clips) == ["hover"]
+    assert [frame.shape for frame in clips["hover"]] == [(480, 640, 3)] * 2
+
+
+def test_table_and_file(data, no_sample, fake_pipelines, tmp_path, capsys):
+    out = tmp_path / "times.json"
+    assert latency.main(["--data", str(data), "--rounds", "2", "--out", str(out)]) == 0
+    assert "paper's region selection" in capsys.readouterr().out
+    content = json.loads(out.read_text())
+    assert content["machine"]["opencv"] == cv2.__version__
+    assert content["settings"]["rounds"] == 2
+    assert {row["clip"] for row in content["rows"]} == {"hover"}
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith("times")] == ["times.json"]
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        (["--data", "nowhere"], 1, "nowhere: no such folder"),
+        (["--out", "nowhere/times.json"], 2, "cannot be written"),
+    ],
+)
+def test_bad_options_are_told_in_one_line(
+    data, no_sample, fake_pipelines, capsys, monkeypatch, tmp_path, options, status, message
+):
+    monkeypatch.chdir(tmp_path)
+    base = [] if "--data" in options else ["--data", str(data), "--rounds", "1"]
+    assert latency.main([*base, *options]) == status
+    errors = capsys.readouterr().err.strip().splitlines()
+    assert len(errors) == 1
+    assert message in errors[0]
+
+
+def test_nothing_to_time_is_told(data, no_sample, capsys):
+    (data / "frames").rename(data / "away")
+    assert latency.main(["--data", str(data)]) == 1
+    assert "bundled clip is missing" in capsys.readouterr().err

@@ -92,19 +92,28 @@ def test_time_goes_on_from_round_to_round(fake_pipelines):
 
 def test_opencv_threads_are_restored_even_after_an_error():
     before = cv2.getNumThreads()
-    with pytest.raises(ZeroDivisionError), opencv_threads(1):
-        assert cv2.getNumThreads() == 1
-        raise ZeroDivisionError
+    inside = []
+
+    def fail():
+        with opencv_threads(1):
+            inside.append(cv2.getNumThreads())
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert inside == [1]
     assert cv2.getNumThreads() == before
 
 
-def test_clips_are_scaled_to_one_size(data, no_sample):
+@pytest.mark.usefixtures("no_sample")
+def test_clips_are_scaled_to_one_size(data):
     clips = read_clips(data, QUICK)
     assert list(clips) == ["hover"]
     assert [frame.shape for frame in clips["hover"]] == [(480, 640, 3)] * 2
 
 
-def test_table_and_file(data, no_sample, fake_pipelines, tmp_path, capsys):
+@pytest.mark.usefixtures("no_sample", "fake_pipelines")
+def test_table_and_file(data, tmp_path, capsys):
     out = tmp_path / "times.json"
     assert latency.main(["--data", str(data), "--rounds", "2", "--out", str(out)]) == 0
     assert "paper's region selection" in capsys.readouterr().out
@@ -115,6 +124,7 @@ def test_table_and_file(data, no_sample, fake_pipelines, tmp_path, capsys):
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("times")] == ["times.json"]
 
 
+@pytest.mark.usefixtures("no_sample", "fake_pipelines")
 @pytest.mark.parametrize(
     ("options", "status", "message"),
     [
@@ -122,9 +132,7 @@ def test_table_and_file(data, no_sample, fake_pipelines, tmp_path, capsys):
         (["--out", "nowhere/times.json"], 2, "cannot be written"),
     ],
 )
-def test_bad_options_are_told_in_one_line(
-    data, no_sample, fake_pipelines, capsys, monkeypatch, tmp_path, options, status, message
-):
+def test_bad_options_are_told_in_one_line(data, capsys, monkeypatch, tmp_path, options, status, message):
     monkeypatch.chdir(tmp_path)
     base = [] if "--data" in options else ["--data", str(data), "--rounds", "1"]
     assert latency.main([*base, *options]) == status
@@ -133,7 +141,8 @@ def test_bad_options_are_told_in_one_line(
     assert message in errors[0]
 
 
-def test_nothing_to_time_is_told(data, no_sample, capsys):
+@pytest.mark.usefixtures("no_sample")
+def test_nothing_to_time_is_told(data, capsys):
     (data / "frames").rename(data / "away")
     assert latency.main(["--data", str(data)]) == 1
     assert "bundled clip is missing" in capsys.readouterr().err

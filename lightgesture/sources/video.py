@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
 import cv2
 
@@ -54,10 +54,8 @@ class VideoFile:
         is_counted = start[:4] == b"RIFF" or start[4:8] in _MP4_BOXES
         self._spare_s = settings.spare_s if is_counted else settings.spare_s_estimated
         self._spare_frames = settings.spare_frames
-        # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol. Bytes,
-        # which OpenCV's stubs do not know, for a text that is no UTF-8 crashes it.
-        file: Any = os.fsencode(os.path.abspath(path))
-        self._capture = cv2.VideoCapture(file)
+        # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol.
+        self._capture = cv2.VideoCapture(os.path.abspath(path))
         if not self._capture.isOpened():
             raise InputError(
                 f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
@@ -115,9 +113,11 @@ def _read_start(path: str, length: int) -> bytes:
 
 
 def _refuse_no_video(path: str, start: bytes) -> None:
-    """Refuse what FFmpeg would make something of though it is no video: pictures, and text as a screen."""
+    """Refuse what would crash OpenCV, and what FFmpeg takes for a video: pictures, and text as a screen."""
     if not start:
         raise InputError(f"{path}: is empty (0 bytes); copy or record it again")
+    if not _is_utf8(os.path.abspath(path)):  # OpenCV crashes on such names
+        raise InputError(f"{path}: the name is not UTF-8; rename the file or its folder")
     if is_picture_name(path):
         raise InputError(
             f"{path}: is a single picture, no video; name its folder to decode all frames in it, "
@@ -125,3 +125,11 @@ def _refuse_no_video(path: str, start: bytes) -> None:
         )
     if all(byte >= 0x20 or byte in _TEXT_CONTROLS for byte in start):
         raise InputError(f"{path}: is text, no video; name a video or a folder of frames")
+
+
+def _is_utf8(name: str) -> bool:
+    try:
+        name.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return True

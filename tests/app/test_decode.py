@@ -159,7 +159,7 @@ def test_grey_deep_and_resized_frames(run, make_picture, fake):
     assert [shape for _, _, shape in fake.made[-1].seen] == [(40, 50, 3), (40, 50, 3), (30, 20, 3)]
 
 
-@pytest.mark.parametrize("name", ["två dykare.avi", "line\nfeed.avi", "100%d [1]*?.avi", "\udcff.avi"])
+@pytest.mark.parametrize("name", ["två dykare.avi", "line\nfeed.avi", "100%d [1]*?.avi"])
 def test_hostile_names(run, make_video, tmp_path, name):
     path = make_video(name, 3)
     out = tmp_path / "out"

@@ -256,6 +256,12 @@ def test_hostile_names_of_videos(make_video, name, monkeypatch, tmp_path):
     assert len(read_all(name)) == 3
 
 
+def test_name_that_is_no_utf8(make_video, make_picture):
+    with pytest.raises(InputError, match="the name is not UTF-8; rename"):
+        open_source(make_video("\udcff.avi", 3))
+    assert len(read_all(make_picture("\udcff/\udcff.png").parent)) == 1
+
+
 @pytest.mark.parametrize("name", ["två dykare", "100%d [1]*?", "take:1"])
 def test_hostile_names_of_folders_and_pictures(make_picture, name):
     path = make_picture(f"{name}/{name}.png")

@@ -16,18 +16,13 @@ from numpy.typing import NDArray
 
 from lightgesture.benchmarks.datasets import read_landmarks, read_table
 from lightgesture.sources import read_picture
+from lightgesture.training.cutouts import draw_hand
 
 Moments = NDArray[np.float64]
 Contour = NDArray[np.int32]
 
 HU_FLOOR = 1e-5
 """Hu moments below this are left out of the distance, as `cv2.matchShapes` does."""
-
-FINGERS = ((0, 1, 2, 3, 4), (0, 5, 6, 7, 8), (0, 9, 10, 11, 12), (0, 13, 14, 15, 16), (0, 17, 18, 19, 20))
-"""Landmarks along each finger, from the wrist to the tip."""
-
-PALM = (0, 1, 5, 9, 13, 17)
-"""Landmarks round the palm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +33,7 @@ class BankSettings:
     left_out: sources that show the people of scored frames (`emre_drone`: those of `frames/drone`).
     black_level: grey level, 0 to 255, above which a pixel of these belongs to the hand; higher eats shadows.
     per_class: contours a class; more cost time and gain little, neighbours being of the same five subjects.
-    finger_width: width of a drawn finger as a share of the longer side of the landmark box.
+    finger_width: width of a drawn finger over the palm's length (wrist to middle knuckle).
     accepted_share: share of the bank's hands that must lie within the accepted distance of another
         subject's; higher accepts more shapes that are no hands.
     """
@@ -47,7 +42,7 @@ class BankSettings:
     left_out: frozenset[str] = frozenset({"emre_drone"})
     black_level: int = 16
     per_class: int = 30
-    finger_width: float = 0.18
+    finger_width: float = 0.28
     accepted_share: float = 0.95
 
 
@@ -104,17 +99,13 @@ def largest_contour(mask: NDArray[np.uint8]) -> Contour | None:
     return np.asarray(max(contours, key=cv2.contourArea), dtype=np.int32).reshape(-1, 2)
 
 
-def draw_hand(landmarks: NDArray[np.float32], finger_width: float) -> NDArray[np.uint8]:
-    """Mask of a hand, 255 inside, drawn as thick fingers and a filled palm from 21 landmarks (21, 2)."""
-    low, high = landmarks.min(axis=0), landmarks.max(axis=0)
-    width = max(1, round(finger_width * float((high - low).max())))
-    points = np.rint(landmarks - low + 2 * width).astype(np.int32)
-    columns, rows = (np.ceil(high - low).astype(int) + 4 * width).tolist()
-    mask = np.zeros((rows, columns), np.uint8)
-    for finger in FINGERS:
-        cv2.polylines(mask, [points[list(finger)]], False, 255, width)
-    cv2.fillPoly(mask, [points[list(PALM)]], 255)
-    return mask
+def drawn_contour(landmarks: NDArray[np.float32], finger_width: float) -> Contour | None:
+    """Contour of a hand drawn as thick strokes along its 21 landmarks, float32 (21, 2) pixels."""
+    low = landmarks.min(axis=0)
+    reach = landmarks.max(axis=0) - low
+    margin = float(reach.max()) / 2  # more than half of any stroke
+    columns, rows = np.ceil(reach + 2 * margin).astype(int).tolist()
+    return largest_contour(draw_hand((rows, columns), landmarks - low + margin, finger_width))
 
 
 def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
@@ -135,7 +126,11 @@ def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
         if is_cut_out:
             members = [row for row in members if row["set"] == settings.cut_out_set]
         for row in _evenly(members, settings.per_class):
-            contour = _cut_out_contour(data, row, settings) if is_cut_out else _drawn_contour(row, settings)
+            contour = (
+                _cut_out_contour(data, row, settings)
+                if is_cut_out
+                else drawn_contour(read_landmarks(row), settings.finger_width)
+            )
             if contour is not None:
                 moments.append(hu_moments(contour))
                 tokens.append(token)
@@ -147,10 +142,6 @@ def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
 def _cut_out_contour(data: Path, row: dict[str, str], settings: BankSettings) -> Contour | None:
     image = read_picture(data / "hands" / row["path"])
     return largest_contour((image.max(axis=2) > settings.black_level).astype(np.uint8))
-
-
-def _drawn_contour(row: dict[str, str], settings: BankSettings) -> Contour | None:
-    return largest_contour(draw_hand(read_landmarks(row), settings.finger_width))
 
 
 def _evenly(rows: Sequence[dict[str, str]], count: int) -> list[dict[str, str]]:

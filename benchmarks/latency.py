@@ -250,11 +250,10 @@ def _find_data(folder: str | None) -> Path | None:
         return None
 
 
-def _rounds(text: str) -> int:
-    rounds = int(text)
-    if rounds < 1:
-        raise ValueError
-    return rounds
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least 1")
+    return int(text)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -267,7 +266,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--model", default="svm", metavar="svm|PATH", help="classifier (default: svm)")
     parser.add_argument("--out", metavar="FILE.json", help="write the figures and the machine here")
     parser.add_argument(
-        "--rounds", type=_rounds, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
+        "--rounds", type=_count, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
     )
     try:
         run(parser.parse_args(argv))

@@ -46,6 +46,18 @@ SCRIPTS = {"hover": Script(3, ("STOP HOVER GO",))}
 """Sequences that were signed as an instruction; the frames of `hover` are few, so it is held for 3."""
 
 
+SEEN = {
+    "subhi": "pictures",
+    "subhi_26": "person",
+    "subhi_46": "person",
+    "drone": "people",
+    "funie": "pictures",
+    "rov25_reef": "pictures",
+    "u45": "pictures",
+}
+"""Groups that the shipped models know: their very pictures, or other pictures of the same people."""
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
     """The readings of one sample and their score."""
@@ -115,7 +127,18 @@ def _answer(sample: Sample, readings: Sequence[Reading]) -> Answer:
 def regions_table(runs: Sequence[Run]) -> Table:
     """Hands found, tokens, sides and pairs of every run."""
     columns = (
-        *("method", "group", "mode", "frames", "hands", "found", "found_share", "mean_iou", "side_share"),
+        *(
+            "method",
+            "group",
+            "seen",
+            "mode",
+            "frames",
+            "hands",
+            "found",
+            "found_share",
+            "mean_iou",
+            "side_share",
+        ),
         *("tokens", "read", "read_share", "wrong", "pairs", "both", "both_share", "extra"),
     )
     note = (
@@ -123,8 +146,8 @@ def regions_table(runs: Sequence[Run]) -> Table:
         "token; wrong: found and given another token;\n"
         "side_share: sides right among the found; pairs: frames with two hands of known token; both: both "
         "read;\n"
-        "extra: boxes on no hand where all hands are labelled. "
-        "drone counts only for a model trained without the source emre_drone."
+        "extra: boxes on no hand where all hands are labelled; seen: what the shipped models were trained on,"
+        "\nwhich says little about other people."
     )
     return Table("regions", "Hands in whole frames", columns, tuple(map(_region_row, runs)), note)
 
@@ -134,6 +157,7 @@ def _region_row(run: Run) -> dict[str, Cell]:
     return {
         "method": run.method,
         "group": run.group,
+        "seen": SEEN.get(run.group, "no"),
         "mode": run.mode,
         "frames": score.frames,
         "hands": score.hands,
@@ -213,6 +237,7 @@ def negatives_table(runs: Sequence[Run]) -> Table:
         {
             "method": run.method,
             "group": run.group,
+            "seen": SEEN.get(run.group, "no"),
             "mode": run.mode,
             "frames": len(run.answers),
             "any_hand": sum(bool(answer.readings) for answer in run.answers),
@@ -225,7 +250,10 @@ def negatives_table(runs: Sequence[Run]) -> Table:
         }
         for run in runs
     ]
-    columns = ("method", "group", "mode", "frames", "any_hand", "pair", "any_token", "words", "instructions")
+    columns = (
+        *("method", "group", "seen", "mode", "frames"),
+        *("any_hand", "pair", "any_token", "words", "instructions"),
+    )
     title = "Frames without a gesturing diver: nothing may be found"
     return Table("negatives", title, columns, (*rows, *_negative_totals(rows)))
 

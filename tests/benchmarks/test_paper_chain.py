@@ -8,7 +8,7 @@ from lightgesture.benchmarks.hand_bank import (
     BankSettings,
     HandBank,
     build_bank,
-    draw_hand,
+    drawn_contour,
     hu_distances,
     hu_moments,
     largest_contour,
@@ -33,7 +33,7 @@ def oval_bank(accepted_distance=0.05):
 
 def random_hand(seed):
     rng = np.random.default_rng(seed)
-    return largest_contour(draw_hand(rng.uniform(0, 100, (21, 2)).astype(np.float32), 0.18))
+    return drawn_contour(rng.uniform(0, 100, (21, 2)).astype(np.float32), 0.28)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lightgesture.features.cells import describe
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import mirror_box, pairwise_iou, scale_box
-from lightgesture.features.pairs import Candidate, candidate, describe_pair
+from lightgesture.features.pairs import COLUMNS, Candidate, candidate, describe_pair
 from lightgesture.features.proposals import Proposals, propose
 from lightgesture.features.selector_file import Selector, load_selector
 from lightgesture.features.trees import evaluate
@@ -27,6 +27,8 @@ class SelectorSettings:
 
     candidates: regions kept for pairing, 2 to 12; the time for pairs grows with the square.
     distinct_iou: candidates overlap at most this much.
+    alternatives: most other extents kept with a candidate, 0 to 4; each is one more patch to read.
+    alternative_iou: least overlap of another extent with the candidate.
     apart_iou: the two hands of a pair overlap at most this much.
     pair_score: least score of a pair. Lower finds more hands and more that are none.
     single_score: least score of a region without a partner.
@@ -35,6 +37,8 @@ class SelectorSettings:
 
     candidates: int = 8
     distinct_iou: float = 0.5
+    alternatives: int = 3
+    alternative_iou: float = 0.35
     apart_iou: float = 0.1
     pair_score: float = 0.3
     single_score: float = 0.5
@@ -62,7 +66,7 @@ def pair_numbers(
     count = len(candidates)
     pairs = [(i, j) for i in range(count) for j in range(i + 1, count) if overlap[i, j] <= apart_iou]
     rows = [describe_pair(candidates[i], candidates[j], size) for i, j in pairs]
-    return pairs, np.array(rows, np.float32).reshape(len(pairs), -1)
+    return pairs, np.array(rows, np.float32).reshape(len(pairs), COLUMNS)
 
 
 def scored_candidates(
@@ -71,6 +75,36 @@ def scored_candidates(
     """Numbers of the proposals that go on to pairing, and what their pairs need."""
     kept = _best(proposals, scores, settings)
     return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
+
+
+def _alternatives(
+    proposals: Proposals, scores: NDArray[np.float32], kept: Sequence[int], settings: SelectorSettings
+) -> list[list[int]]:
+    """For each kept proposal the best of the others that overlap it most among the kept."""
+    overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
+    nearest = overlap.argmax(axis=1)
+    order = np.argsort(-scores, kind="stable")
+    near_enough = overlap.max(axis=1) >= settings.alternative_iou
+    return [
+        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][
+            : settings.alternatives
+        ]
+        for place, index in enumerate(kept)
+    ]
+
+
+def _region(
+    colour: ColourMap, proposals: Proposals, index: int, score: float, extents: Sequence[int]
+) -> HandRegion:
+    """A proposal in source pixels."""
+
+    def box_of(number: int) -> Box:
+        x, y, width, height = (int(value) for value in proposals.boxes[number])
+        return scale_box((x, y, width, height), colour.scale, colour.source_size)
+
+    contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
+    confidence = float(np.clip(score, 0.0, 1.0))
+    return HandRegion(box_of(index), contour, None, confidence, tuple(box_of(number) for number in extents))
 
 
 class RegionStage:
@@ -94,17 +128,12 @@ class RegionStage:
             first, second = np.array(pairs).T
             together[first, second] = evaluate(self._selector.pairs, rows).clip(0.0, 1.0)
             together = np.maximum(together, together.T)
-        regions = tuple(self._region(colour, proposals, index, scores) for index in kept)
+        others = _alternatives(proposals, scores, kept, self.settings)
+        regions = tuple(
+            _region(colour, proposals, index, float(scores[index]), extents)
+            for index, extents in zip(kept, others, strict=True)
+        )
         return Candidates(regions, together, colour.source_size)
-
-    @staticmethod
-    def _region(
-        colour: ColourMap, proposals: Proposals, index: int, scores: NDArray[np.float32]
-    ) -> HandRegion:
-        x, y, width, height = (int(value) for value in proposals.boxes[index])
-        contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
-        box = scale_box((x, y, width, height), colour.scale, colour.source_size)
-        return HandRegion(box, contour, None, float(np.clip(scores[index], 0.0, 1.0)))
 
 
 def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | None:
@@ -155,4 +184,9 @@ def find_hands(image: Image, *, mirrored: bool = False) -> list[HandRegion]:
 def mirror_region(region: HandRegion, width: int) -> HandRegion:
     """The region in the picture flipped left to right; its side stays."""
     contour = region.contour * np.array([-1, 1]) + np.array([width - 1, 0])
-    return replace(region, box=mirror_box(region.box, width), contour=contour.astype(np.int32))
+    return replace(
+        region,
+        box=mirror_box(region.box, width),
+        contour=contour.astype(np.int32),
+        alternatives=tuple(mirror_box(box, width) for box in region.alternatives),
+    )

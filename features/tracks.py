@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lightgesture.features import kalman
 from lightgesture.features.kalman import Coordinate
 from lightgesture.features.selector import SelectorSettings, best_pair, side_in_picture
-from lightgesture.features.types import Box, Candidates, Side, Track
+from lightgesture.features.types import Box, Candidates, HandRegion, Side, Track
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,21 +197,30 @@ class TrackStage:
         for number, life in enumerate(self._lives):
             if number in matched:
                 region = candidates.regions[chosen[matched[number]]]
-                lives.append(self._updated(life, region.box, region.confidence, time_s))
+                lives.append(self._updated(life, region, time_s))
             # A believed pair elsewhere replaces what was followed.
             elif len(chosen) < 2 and time_s - life.seen_s <= self.settings.lost_s:
                 box = _box(life.coordinates, candidates.source_size)
-                lives.append(replace(life, track=replace(life.track, box=box, missed=life.track.missed + 1)))
+                missed = life.track.missed + 1
+                lives.append(
+                    replace(life, track=replace(life.track, box=box, missed=missed, alternatives=()))
+                )
         fresh = [index for place, index in enumerate(chosen) if place not in matched.values()]
         return lives + self._born(candidates, fresh, lives, time_s)
 
-    def _updated(self, life: _Life, box: Box, confidence: float, time_s: float) -> _Life:
+    def _updated(self, life: _Life, region: HandRegion, time_s: float) -> _Life:
         variance = (self.settings.measurement_noise * _hand_size(life.coordinates)) ** 2
         coordinates = tuple(
             kalman.update(item, value, variance)
-            for item, value in zip(life.coordinates, _measure(box), strict=True)
+            for item, value in zip(life.coordinates, _measure(region.box), strict=True)
         )
-        track = replace(life.track, box=box, confidence=confidence, missed=0)
+        track = replace(
+            life.track,
+            box=region.box,
+            confidence=region.confidence,
+            missed=0,
+            alternatives=region.alternatives,
+        )
         return _Life(track, coordinates, time_s)
 
     def _born(
@@ -230,14 +239,15 @@ class TrackStage:
         else:
             return []
         return [
-            self._new(candidates.regions[index].box, candidates.regions[index].confidence, side, time_s)
+            self._new(candidates.regions[index], side, time_s)
             for index, side in zip(fresh, sides, strict=True)
         ]
 
-    def _new(self, box: Box, confidence: float, side: Side, time_s: float) -> _Life:
-        size = float(box[2] * box[3]) ** 0.5
+    def _new(self, region: HandRegion, side: Side, time_s: float) -> _Life:
+        box = region.box
+        size = math.sqrt(box[2] * box[3])
         position = (self.settings.measurement_noise * size) ** 2
         coordinates = tuple(kalman.start(value, position, (2.0 * size) ** 2) for value in _measure(box))
-        track = Track(self._next, side, box, confidence, missed=0)
+        track = Track(self._next, side, box, region.confidence, 0, region.alternatives)
         self._next += 1
         return _Life(track, coordinates, time_s)

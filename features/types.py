@@ -25,12 +25,15 @@ class HandRegion:
     contour: int32 (n, 2), closed outline in source pixels.
     side: the diver's own side, or None before the sides are decided.
     confidence: 0 to 1, how sure the selector is that this is a hand.
+    alternatives: other extents of the same region, best first: with or without the forearm, at another level
+        of the skin map. Whoever reads the hand may find that one of them fits better.
     """
 
     box: Box
     contour: NDArray[np.int32]
     side: Side | None
     confidence: float
+    alternatives: tuple[Box, ...] = ()
 
     @property
     def mask(self) -> NDArray[np.bool_]:
@@ -65,6 +68,7 @@ class Track:
     box: position and size, source pixels: the region's own where it was seen, predicted where not.
     confidence: the selector's confidence in the region that last updated the track, 0 to 1.
     missed: frames since the last matching region, 0 when seen now.
+    alternatives: those of the region that was seen now, else none.
     """
 
     number: int
@@ -72,3 +76,4 @@ class Track:
     box: Box
     confidence: float
     missed: int
+    alternatives: tuple[Box, ...] = ()

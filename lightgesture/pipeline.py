@@ -85,6 +85,7 @@ class Pipeline:
         self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
         self._clock = StageClock()
         self._index = 0
+        self._processed = 0
         self._seconds = 0.0
         self._counts = {Instruction: 0, Rejected: 0}
 
@@ -103,13 +104,16 @@ class Pipeline:
         with self._clock.stage("tracks"):
             tracks = self._tracks.process(candidates, time_s)
         with self._clock.stage("classify"):
-            sightings = [Sighting(track.side, track.box, track.number) for track in tracks]
+            sightings = [
+                Sighting(track.side, (track.box, *track.alternatives), track.number) for track in tracks
+            ]
             hands = self._reading.process(upright, sightings)
         with self._clock.stage("decode"):
             events = self._decode(hands, time_s, index)
         self._clock.end_frame()
         self._index, self._seconds = index + 1, time_s
-        if self._debug is not None:
+        self._processed += 1
+        if self._debug is not None and self._debug.is_selected:
             self._debug.write("colour", index, draw_colour(colour))
             self._debug.write("regions", index, draw_regions(upright, candidates))
             self._debug.write("tracks", index, draw_tracks(upright, tracks))
@@ -125,7 +129,7 @@ class Pipeline:
         pending = self._count(self._decoder.finish())
         summary = SummaryRecord(
             source=self._source,
-            frames=self._index,
+            frames=self._processed,
             seconds=round(self._seconds, 6),
             instructions=self._counts[Instruction],
             rejected=self._counts[Rejected],
@@ -143,9 +147,12 @@ class Pipeline:
         settings = self._regions.settings
         chosen = choose(candidates, settings)
         certainty = settings.alone_confidence if len(chosen) == 1 else 1.0
-        sightings = [Sighting(region.side or "right", region.box, None, certainty) for region in chosen]
+        sightings = [
+            Sighting(region.side or "right", (region.box, *region.alternatives), None, certainty)
+            for region in chosen
+        ]
         hands = self._reading.process(upright, sightings)
-        if self._debug is not None:
+        if self._debug is not None and self._debug.is_selected:
             self._debug.write("colour", 0, draw_colour(colour))
             self._debug.write("regions", 0, draw_regions(upright, candidates))
             self._debug.write("classify", 0, draw_hands(upright, hands))

@@ -27,11 +27,14 @@ class ReadingSettings:
 
 @dataclass(frozen=True, slots=True)
 class Sighting:
-    """A hand to be read. box: source pixels. track: number, None in single pictures.
-    certainty: factor on the confidence, 1 where the side is known."""
+    """A hand to be read.
+
+    boxes: its extents, source pixels, the likeliest first; at least one. track: number, None in single pictures.
+    certainty: factor on the confidence, 1 where the side is known.
+    """
 
     side: Side
-    box: Box
+    boxes: tuple[Box, ...]
     track: int | None
     certainty: float = 1.0
 
@@ -61,6 +64,12 @@ def read_token(
     return classes[best], confidence, None
 
 
+def clearest(rows: NDArray[np.float32], classes: Sequence[str]) -> int:
+    """The row (extents, classes) in which some token, not `none`, is most likely."""
+    tokens = [column for column, name in enumerate(classes) if name != NONE]
+    return int(rows[:, tokens].max(axis=1).argmax())
+
+
 class ReadingStage:
     """Sightings of a frame -> hands with tokens."""
 
@@ -72,22 +81,29 @@ class ReadingStage:
         """Read every sighting in one BGR frame, the diver's right hand first."""
         if not sightings:
             return ()
-        rows = self._classifier.probabilities(
-            image, [item.box for item in sightings], [item.side for item in sightings]
-        )
-        size = image.shape[1], image.shape[0]
+        boxes = [box for item in sightings for box in item.boxes]
+        sides = [item.side for item in sightings for _ in item.boxes]
+        rows = self._classifier.probabilities(image, boxes, sides)
         hands = []
-        for item, row in zip(sightings, rows, strict=True):
-            at_edge = _touches_edge(item.box, size, self._settings.edge_share)
-            token, confidence, reason = read_token(row, self._classifier.classes, at_edge, self._settings)
-            hands.append(
-                Hand(
-                    side=item.side,
-                    token=token,
-                    confidence=round(confidence * item.certainty, 4),
-                    box=item.box,
-                    track=item.track,
-                    reason=reason,
-                )
-            )
+        first = 0
+        for item in sightings:
+            own = rows[first : first + len(item.boxes)]
+            first += len(item.boxes)
+            hands.append(self._read(image, item, own))
         return tuple(hands)
+
+    def _read(self, image: Image, item: Sighting, rows: NDArray[np.float32]) -> Hand:
+        """The hand in the extent in which it reads most clearly."""
+        classes = self._classifier.classes
+        place = clearest(rows, classes)
+        box = item.boxes[place]
+        at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
+        token, confidence, reason = read_token(rows[place], classes, at_edge, self._settings)
+        return Hand(
+            side=item.side,
+            token=token,
+            confidence=round(confidence * item.certainty, 4),
+            box=box,
+            track=item.track,
+            reason=reason,
+        )

@@ -14,7 +14,13 @@ _GREEN, _YELLOW, _RED, _WHITE = (60, 220, 60), (0, 220, 255), (60, 60, 255), (25
 
 
 class PictureSink(Protocol):
-    """Takes the picture of a stage, uint8 (h, w, 3) BGR, for the frame with this index."""
+    """Takes the picture of a stage, uint8 (h, w, 3) BGR, for the frame with this index.
+
+    is_selected: whether the pictures of the frame at hand will be kept; the others need not be drawn.
+    """
+
+    @property
+    def is_selected(self) -> bool: ...
 
     def write(self, stage: str, index: int, image_bgr: Image) -> None: ...
 

@@ -132,7 +132,8 @@ class Composer:
     def _put_decoys(self, canvas: Float, unit: float, rng: np.random.Generator) -> None:
         """Objects about as large as hands: pieces of other pictures with a hard edge and a colour of their own."""
         width, height = self._settings.size
-        for _ in range(rng.integers(0, self._settings.decoys + 1)):
+        count = rng.integers(1, self._settings.decoys + 1) if rng.random() < 0.5 else 0
+        for _ in range(count):
             texture = self._background(self._rooms, rng)
             radius = unit * rng.uniform(0.2, 0.8)
             centre = rng.uniform(0, width), rng.uniform(0, height)

@@ -29,8 +29,8 @@ class RegionTraining:
     negative_sets: sets of `negatives` that are trained on; all others stay unseen for the report.
     """
 
-    region_composites: int = 3000
-    pair_composites: int = 1500
+    region_composites: int = 8000
+    pair_composites: int = 2500
     cutouts_per_source: int = 8
     longest_side: int = 320
     negative_sets: tuple[str, ...] = ("funie", "rov25", "u45")
@@ -131,13 +131,13 @@ def without_hands(picture: BoxedPicture) -> Image:
 
 
 def variants(picture: BoxedPicture, rng: np.random.Generator) -> Iterator[BoxedPicture]:
-    """The picture itself, mirrored under water, and in the dark."""
+    """The picture itself, then it and its mirror image under water and in the dark."""
     yield picture
-    flipped = _mirrored(picture)
-    wet = attenuate(flipped.image.astype(np.float32) / 255.0, rng)
-    yield BoxedPicture(expose(wet, rng), flipped.boxes)
-    linear = np.power(picture.image.astype(np.float32) / 255.0, 2.2) * rng.uniform(0.03, 0.3)
-    yield BoxedPicture(expose(np.power(linear, 1 / 2.2).astype(np.float32), rng), picture.boxes)
+    for view in (picture, _mirrored(picture)):
+        image = view.image.astype(np.float32) / np.float32(255.0)
+        yield BoxedPicture(expose(attenuate(image, rng), rng), view.boxes)
+        shaded = np.power(np.power(image, 2.2) * rng.uniform(0.03, 0.3), 1 / 2.2)
+        yield BoxedPicture(expose(np.asarray(shaded, np.float32), rng), view.boxes)
 
 
 def _composed(composer: Composer, count: int, seed: int) -> Iterator[BoxedPicture]:

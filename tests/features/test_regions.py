@@ -1,0 +1,157 @@
+"""Colour map, proposals, wrist and choice on drawn pictures, ugly ones included."""
+
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.features import find_hands
+from lightgesture.features.cells import describe
+from lightgesture.features.colour import (
+    ColourSettings,
+    ColourStage,
+    compensate_red,
+    gray_world,
+    reduce_picture,
+)
+from lightgesture.features.geometry import mirror_box, pairwise_iou, scale_box
+from lightgesture.features.proposals import propose
+from lightgesture.features.selector import RegionStage, SelectorSettings, choose
+from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.features.wrist import WristSettings, cut_forearm, palm_circle
+
+SKIN, WATER = (110, 140, 200), (150, 120, 40)
+
+
+def _picture_with_blob(cast=(1.0, 1.0, 1.0)):
+    image = np.full((480, 640, 3), WATER, np.uint8)
+    cv2.ellipse(image, (200, 200), (45, 60), 0, 0, 360, SKIN, cv2.FILLED)
+    return np.clip(image * np.array(cast), 0, 255).astype(np.uint8)
+
+
+def test_reduced_pictures_have_the_working_area_whatever_the_size():
+    for shape in ((480, 640), (1080, 1920), (6000, 8000), (480, 100)):
+        small = reduce_picture(np.zeros((*shape, 3), np.uint8), 19200)
+        assert small.shape[0] * small.shape[1] == pytest.approx(19200, rel=0.03)
+    assert reduce_picture(np.zeros((1, 1, 3), np.uint8), 19200).shape == (1, 1, 3)
+
+
+def test_red_is_given_back_only_where_green_leads():
+    image = np.full((4, 4, 3), (0.5, 0.6, 0.2), np.float32)
+    expected = 0.2 + (0.6 - 0.2) * (1 - 0.2) * 0.6
+    assert compensate_red(image, 1.0)[0, 0, 2] == pytest.approx(expected)
+    reddish = np.full((4, 4, 3), (0.2, 0.3, 0.6), np.float32)
+    np.testing.assert_array_equal(compensate_red(reddish, 1.0), reddish)
+
+
+def test_gray_world_makes_the_means_equal():
+    rng = np.random.default_rng(0)
+    image = rng.uniform(0.1, 0.4, (30, 40, 3)).astype(np.float32) * np.array([1.0, 0.8, 0.4], np.float32)
+    means = gray_world(image).reshape(-1, 3).mean(axis=0)
+    np.testing.assert_allclose(means, means.mean(), rtol=0.01)
+
+
+@pytest.mark.parametrize("cast", [(1, 1, 1), (1.0, 0.9, 0.35), (0.6, 1.0, 0.4), (0.25, 0.25, 0.25)])
+def test_skin_is_proposed_through_any_cast(cast):
+    proposals = propose(ColourStage().process(_picture_with_blob(cast)))
+    truth = np.array([[155, 140, 91, 121]]) / 4.0
+    assert pairwise_iou(proposals.boxes, truth).max() > 0.8
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        np.zeros((480, 640, 3), np.uint8),
+        np.full((480, 640, 3), 255, np.uint8),
+        np.full((480, 640, 3), SKIN, np.uint8),
+        np.zeros((1, 1, 3), np.uint8),
+        np.zeros((1, 900, 3), np.uint8),
+        np.zeros((6000, 8000, 3), np.uint8),
+    ],
+    ids=["black", "white", "all skin", "1x1", "line", "8000x6000"],
+)
+def test_pictures_without_contrast_hold_no_hand(image):
+    assert find_hands(image) == []
+
+
+def test_ten_thousand_specks_take_bounded_time_and_are_no_hands():
+    rng = np.random.default_rng(3)
+    image = np.full((480, 640, 3), WATER, np.uint8)
+    image[rng.integers(0, 480, 10_000), rng.integers(0, 640, 10_000)] = SKIN
+    stage = RegionStage()
+    colour = ColourStage().process(image)
+    start = time.perf_counter()
+    candidates = stage.process(colour)
+    assert time.perf_counter() - start < 2.0
+    assert choose(candidates, stage.settings) == []
+
+
+def test_noise_keeps_proposals_bounded():
+    noise = np.random.default_rng(1).integers(0, 256, (480, 640, 3), np.uint8)
+    proposals = propose(ColourStage().process(noise))
+    assert len(proposals) <= 160
+    assert describe(ColourStage().process(noise), proposals).shape == (len(proposals), 261)
+
+
+def test_the_forearm_is_cut_off_below_the_palm():
+    mask = np.zeros((120, 90), np.uint8)
+    cv2.circle(mask, (40, 35), 22, 255, cv2.FILLED)
+    cv2.rectangle(mask, (30, 35), (50, 110), 255, cv2.FILLED)
+    contour = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0][0].reshape(-1, 2)
+    box = cv2.boundingRect(contour)
+    hand = cut_forearm(contour.astype(np.int32), box, WristSettings())
+    assert hand is not None
+    assert hand[:, 1].max() == pytest.approx(35 + 1.1 * 22, abs=3)
+    assert cut_forearm(hand, cv2.boundingRect(hand), WristSettings()) is None
+
+
+def test_the_palm_circle_is_the_largest_inside():
+    mask = np.zeros((60, 60), np.uint8)
+    cv2.circle(mask, (30, 25), 18, 255, cv2.FILLED)
+    (x, y), radius = palm_circle(mask)
+    assert abs(x - 30) <= 1
+    assert abs(y - 25) <= 1
+    assert radius == pytest.approx(18, abs=1.5)
+
+
+def test_boxes_stay_inside_the_source():
+    assert scale_box((150, 110, 20, 20), (4.0, 4.0), (640, 480)) == (600, 440, 40, 40)
+    assert scale_box((-5, -5, 4, 4), (4.0, 4.0), (640, 480)) == (0, 0, 1, 1)
+    assert mirror_box((10, 5, 30, 40), 640) == (600, 5, 30, 40)
+
+
+def _candidates(scores, together):
+    regions = []
+    for index, score in enumerate(scores):
+        x = 100 + 150 * index
+        contour = np.array([[x, 100], [x + 80, 100], [x + 80, 180]], np.int32)
+        regions.append(HandRegion((x, 100, 80, 80), contour, None, score))
+    return Candidates(tuple(regions), np.array(together, np.float32), (640, 480))
+
+
+def test_a_pair_is_believed_before_a_single_region():
+    hands = choose(_candidates([0.9, 0.3, 0.3], [[0, 0, 0], [0, 0, 0.5], [0, 0.5, 0]]), SelectorSettings())
+    assert [(hand.side, hand.box[0]) for hand in hands] == [("right", 250), ("left", 400)]
+
+
+def test_one_hand_takes_the_side_of_its_half_at_lowered_confidence():
+    hands = choose(_candidates([0.9], [[0]]), SelectorSettings())
+    assert [(hand.side, hand.confidence) for hand in hands] == [("right", pytest.approx(0.72))]
+
+
+def test_nothing_is_chosen_below_the_thresholds():
+    assert choose(_candidates([0.4, 0.3], [[0, 0.2], [0.2, 0]]), SelectorSettings()) == []
+
+
+def test_the_mask_of_a_region_fills_its_outline():
+    contour = np.array([[10, 20], [29, 20], [29, 49], [10, 49]], np.int32)
+    mask = HandRegion((10, 20, 20, 30), contour, None, 1.0).mask
+    assert mask.shape == (30, 20)
+    assert mask.all()
+
+
+def test_a_larger_working_picture_is_an_option():
+    colour = ColourStage(ColourSettings(working_pixels=320 * 240)).process(_picture_with_blob())
+    assert colour.picture.shape[:2] == (240, 320)
+    assert colour.scale == (2.0, 2.0)

@@ -1,0 +1,107 @@
+"""Trees at run time against the library that fitted them; damaged files are refused in one line."""
+
+import numpy as np
+import pytest
+
+from lightgesture.features.selector_file import (
+    BUNDLED,
+    Selector,
+    SelectorError,
+    load_selector,
+    save_selector,
+)
+from lightgesture.features.training import export_trees
+from lightgesture.features.trees import Trees, evaluate
+
+
+def test_exported_trees_predict_what_the_library_predicts():
+    from sklearn.ensemble import HistGradientBoostingRegressor
+
+    rng = np.random.default_rng(0)
+    rows = rng.normal(size=(600, 7)).astype(np.float32)
+    target = rows[:, 0] * rows[:, 1] + np.abs(rows[:, 2])
+    model = HistGradientBoostingRegressor(max_iter=30, max_leaf_nodes=15, random_state=0).fit(rows, target)
+    fresh = rng.normal(size=(400, 7)).astype(np.float32)
+    np.testing.assert_allclose(evaluate(export_trees(model), fresh), model.predict(fresh), atol=1e-5)
+    np.testing.assert_allclose(evaluate(export_trees(model), rows), model.predict(rows), atol=1e-5)
+
+
+def test_a_selector_survives_its_file(tmp_path):
+    bundled = load_selector()
+    save_selector(tmp_path / "copy.npz", bundled)
+    copy = load_selector(tmp_path / "copy.npz")
+    for part in ("regions", "pairs"):
+        for name in ("feature", "threshold", "left", "right", "value"):
+            np.testing.assert_array_equal(
+                getattr(getattr(copy, part), name), getattr(getattr(bundled, part), name)
+            )
+    assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
+
+
+def _write(path, **changes):
+    with np.load(BUNDLED, allow_pickle=False) as stored:
+        arrays = {name: stored[name] for name in stored.files}
+    arrays.update(changes)
+    np.savez(path, **arrays)
+    return path
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"version": np.int32(99)},
+        {"regions_value": np.full((3, 3), np.nan, np.float32)},
+        {"regions_left": np.full((2, 2), 7, np.int16)},
+        {"pairs_depth": np.int64(10_000)},
+        {"regions_base": np.array(["x"])},
+    ],
+    ids=["version", "nan", "child", "depth", "text"],
+)
+def test_a_file_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
+    path = _write(tmp_path / "bad.npz", **changes)
+    with pytest.raises(SelectorError, match=r"bad\.npz: .*lightgesture train regions") as caught:
+        load_selector(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_nan_in_a_tree_of_the_right_shape_is_refused(tmp_path):
+    with np.load(BUNDLED, allow_pickle=False) as stored:
+        value = stored["regions_value"].copy()
+    value[0, 0] = np.nan
+    with pytest.raises(SelectorError, match="not finite"):
+        load_selector(_write(tmp_path / "nan.npz", regions_value=value))
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04 not a zip", b"text"])
+def test_a_file_that_is_no_selector_is_refused_in_one_line(tmp_path, content):
+    path = tmp_path / "cut.npz"
+    path.write_bytes(content)
+    with pytest.raises(SelectorError, match=r"cut\.npz"):
+        load_selector(path)
+
+
+def test_a_cut_off_file_is_refused(tmp_path):
+    path = tmp_path / "half.npz"
+    path.write_bytes(BUNDLED.read_bytes()[:20_000])
+    with pytest.raises(SelectorError, match=r"half\.npz"):
+        load_selector(path)
+
+
+def test_a_missing_file_is_refused(tmp_path):
+    with pytest.raises(SelectorError, match=r"none\.npz: cannot be read"):
+        load_selector(tmp_path / "none.npz")
+
+
+def test_a_pickle_is_never_opened(tmp_path):
+    path = tmp_path / "evil.npz"
+    np.savez(path, version=np.array([object()], dtype=object))
+    with pytest.raises(SelectorError, match=r"evil\.npz"):
+        load_selector(path)
+
+
+def test_trees_that_point_outside_are_refused():
+    ones = np.ones((1, 1), np.int16)
+    trees = Trees(ones * 0, np.zeros((1, 1), np.float32), ones, ones, np.zeros((1, 1), np.float32), 0.0, 1)
+    with pytest.raises(ValueError, match="outside its nodes"):
+        trees.check(columns=3)
+    assert isinstance(Selector(trees, trees), Selector)

@@ -81,7 +81,7 @@ def _fit(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Tree
         max_depth=settings.depth,
         min_samples_leaf=settings.least_rows,
         l2_regularization=settings.smoothing,
-        early_stopping=False,
+        early_stopping=False,  # pyright: ignore[reportArgumentType]
         random_state=seed,
     )
     weights = np.where(targets > 0.3, settings.hand_weight, 1.0)
@@ -94,7 +94,7 @@ def export_trees(model: object) -> Trees:
     reads the private one; a test compares the result with the model's own predictions."""
     nodes = [group[0].nodes for group in model._predictors]  # type: ignore[attr-defined]
     shape = len(nodes), max(len(tree) for tree in nodes)
-    feature = np.full(shape, -1, np.int16)
+    feature = np.zeros(shape, np.int16)
     threshold, value = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
     left = np.zeros(shape, np.int16)
     right = np.zeros(shape, np.int16)
@@ -113,7 +113,7 @@ def export_trees(model: object) -> Trees:
         value[row, :count] = np.where(leaf, tree["value"], 0.0)
     depth = int(max(tree["depth"].max() for tree in nodes))
     base = float(np.ravel(model._baseline_prediction)[0])  # type: ignore[attr-defined]
-    return Trees(feature.clip(0), threshold, left, right, value, base, depth)
+    return Trees(feature, threshold, left, right, value, base, depth)
 
 
 def fit_regions(pictures: Iterable[BoxedPicture], seed: int, settings: TreeSettings = REGION_TREES) -> Trees:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 class Trees:
     """A sum of regression trees, all in arrays of shape (trees, nodes), node 0 the root.
 
-    feature: int16, the column that a node compares; -1 at a leaf. threshold: float32, a row goes left
+    feature: int16, the column that a node compares, any at a leaf. threshold: float32, a row goes left
     where its value is at or below. left, right: int16 node numbers (a leaf points at itself).
     value: float32, what a leaf adds. base: added once. depth: steps that reach every leaf.
     """
@@ -33,7 +33,7 @@ class Trees:
         for child in (self.left, self.right):
             if child.size and (child.min() < 0 or child.max() >= shape[1]):
                 raise ValueError("a tree points outside its nodes")
-        if self.feature.size and (self.feature.min() < -1 or self.feature.max() >= columns):
+        if self.feature.size and (self.feature.min() < 0 or self.feature.max() >= columns):
             raise ValueError("a tree asks for a column that there is not")
         if not (
             np.isfinite(self.threshold).all() and np.isfinite(self.value).all() and np.isfinite(self.base)
@@ -44,13 +44,20 @@ class Trees:
 
 
 def evaluate(trees: Trees, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Sum of the leaves that each row (n, columns) reaches: float32 (n,). All trees walk in step."""
-    count = len(trees.feature)
-    tree = np.arange(count)[None, :]
-    row = np.arange(len(rows))[:, None]
-    node = np.zeros((len(rows), count), np.int64)
+    """Sum of the leaves that each row (n, columns) reaches: float32 (n,).
+
+    All rows walk down all trees in step, on flat arrays: `take` with one index is several times as fast as
+    indexing by tree and node.
+    """
+    count, nodes = trees.feature.shape
+    columns = rows.shape[1]
+    root = (np.arange(count) * nodes).astype(np.intp)
+    children = np.stack([trees.left + root[:, None], trees.right + root[:, None]], axis=-1).ravel()
+    feature, threshold = trees.feature.astype(np.intp).ravel(), trees.threshold.ravel()
+    values = np.ascontiguousarray(rows, np.float32).ravel()
+    row = (np.arange(len(rows)) * columns)[:, None]
+    node = np.broadcast_to(root, (len(rows), count))
     for _ in range(trees.depth):
-        column = trees.feature[tree, node]
-        goes_left = rows[row, column] <= trees.threshold[tree, node]
-        node = np.where(goes_left, trees.left[tree, node], trees.right[tree, node])
-    return np.asarray(trees.base + trees.value[tree, node].sum(axis=1), np.float32)
+        goes_right = values.take(row + feature.take(node)) > threshold.take(node)
+        node = children.take(2 * node + goes_right)
+    return np.asarray(trees.base + trees.value.ravel().take(node).sum(axis=1), np.float32)

@@ -1,0 +1,136 @@
+"""The real stages joined up, on drawn frames: records, sizes, sides and clocks."""
+
+import numpy as np
+import pytest
+
+from lightgesture import Pipeline
+from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, read_token
+from lightgesture.records import FrameRecord, SummaryRecord
+
+CLASSES = ("0", "5", "none")
+
+
+class FakeClassifier:
+    """Gives the rows that it was made with, one a box, in turn."""
+
+    classes = CLASSES
+
+    def __init__(self, rows):
+        self.rows = np.array(rows, np.float32)
+        self.asked = []
+
+    def probabilities(self, image_bgr, boxes, sides):
+        self.asked.append((list(boxes), list(sides)))
+        return self.rows[: len(boxes)]
+
+
+def _noise(seed=0, size=(480, 640)):
+    return np.random.default_rng(seed).integers(0, 256, (*size, 3), np.uint8)
+
+
+def test_a_stream_of_nothing_gives_frame_records_and_a_summary():
+    pipeline = Pipeline(source="black")
+    for index in range(3):
+        records = pipeline.process(np.zeros((48, 64, 3), np.uint8), index / 30)
+        assert [type(record) for record in records] == [FrameRecord]
+        assert records[0].to_dict() == {
+            "type": "frame",
+            "source": "black",
+            "frame": index,
+            "time_s": index / 30,
+            "hands": [],
+        }
+    (summary,) = pipeline.finish()
+    assert isinstance(summary, SummaryRecord)
+    assert (summary.frames, summary.instructions, summary.rejected, summary.status) == (3, 0, 0, "ok")
+    assert list(summary.stages_ms) == ["colour", "regions", "tracks", "classify", "decode"]
+    assert summary.ms_per_frame["median"] > 0
+
+
+def test_frames_that_are_left_out_of_the_index_are_not_counted():
+    pipeline = Pipeline()
+    for index in (0, 2, 9):
+        pipeline.process(np.zeros((48, 64, 3), np.uint8), index / 30, index)
+    assert pipeline.finish()[-1].frames == 3
+
+
+@pytest.mark.parametrize("frames", [True, False])
+def test_frame_records_are_given_when_asked_for(frames):
+    records = Pipeline(frames=frames).process(np.zeros((48, 64, 3), np.uint8), 0.0)
+    assert len(records) == int(frames)
+
+
+def test_frames_may_change_their_size_in_mid_stream():
+    pipeline = Pipeline()
+    for index, size in enumerate([(480, 640), (240, 320), (1, 1), (1080, 1920), (480, 640)]):
+        pipeline.process(_noise(index, size), index / 30)
+    assert pipeline.finish()[-1].frames == 5
+
+
+def test_time_that_stands_still_or_runs_back_raises_nothing():
+    pipeline = Pipeline()
+    for time_s in (0.0, 0.0, 5.0, 1.0, float("nan")):
+        pipeline.process(_noise(), time_s)
+
+
+def test_a_mirrored_picture_gives_the_mirrored_boxes_and_the_same_sides(monkeypatch):
+    region = HandRegion((100, 50, 60, 80), np.zeros((3, 2), np.int32), None, 0.9)
+    other = HandRegion((400, 50, 60, 80), np.zeros((3, 2), np.int32), None, 0.9)
+    pairs = np.array([[0, 0.9], [0.9, 0]], np.float32)
+
+    def boxes_of(mirrored):
+        pipeline = Pipeline(mirrored=mirrored)
+        monkeypatch.setattr(
+            pipeline._regions, "process", lambda _: Candidates((region, other), pairs, (640, 480))
+        )
+        record = pipeline.recognize(_noise())
+        return {hand.side: hand.box for hand in record.hands}
+
+    assert boxes_of(False) == {"right": (100, 50, 60, 80), "left": (400, 50, 60, 80)}
+    assert boxes_of(True) == {"right": (480, 50, 60, 80), "left": (180, 50, 60, 80)}
+
+
+def test_the_clearest_extent_is_read():
+    rows = [[0.1, 0.2, 0.7], [0.05, 0.9, 0.05], [0.6, 0.2, 0.2]]
+    stage = ReadingStage(FakeClassifier(rows))
+    boxes = ((10, 10, 30, 60), (10, 10, 30, 40), (12, 12, 20, 20))
+    (hand,) = stage.process(_noise(), [Sighting("left", boxes, 7)])
+    assert (hand.token, hand.box, hand.track, hand.reason) == ("5", boxes[1], 7, None)
+    assert clearest(np.array(rows, np.float32), CLASSES) == 1
+
+
+@pytest.mark.parametrize(
+    ("row", "at_edge", "token", "reason"),
+    [
+        ([0.9, 0.05, 0.05], False, "0", None),
+        ([0.4, 0.3, 0.3], False, None, "low_confidence"),
+        ([0.4, 0.3, 0.3], True, None, "partial"),
+        ([0.1, 0.2, 0.7], False, None, "unknown_shape"),
+        ([0.1, 0.2, 0.7], True, None, "unknown_shape"),
+    ],
+)
+def test_a_token_is_refused_with_its_reason(row, at_edge, token, reason):
+    found = read_token(np.array(row, np.float32), CLASSES, at_edge, ReadingSettings())
+    assert (found[0], found[2]) == (token, reason)
+    assert found[1] == pytest.approx(max(row))
+
+
+def test_an_uncertain_side_lowers_the_confidence():
+    stage = ReadingStage(FakeClassifier([[1.0, 0.0, 0.0]]))
+    (hand,) = stage.process(_noise(), [Sighting("left", ((10, 10, 30, 60),), None, certainty=0.8)])
+    assert hand.confidence == pytest.approx(0.8)
+
+
+def test_each_hand_is_read_from_its_own_rows():
+    classifier = FakeClassifier([[0.9, 0.1, 0.0], [0.1, 0.8, 0.1], [0.2, 0.7, 0.1]])
+    first, second = Sighting("right", ((0, 0, 9, 9),), 1), Sighting("left", ((9, 9, 9, 9), (8, 8, 9, 9)), 2)
+    hands = ReadingStage(classifier).process(_noise(), [first, second])
+    assert [hand.token for hand in hands] == ["0", "5"]
+    assert classifier.asked[0][1] == ["right", "left", "left"]
+
+
+def test_no_sighting_asks_no_classifier():
+    classifier = FakeClassifier([])
+    assert ReadingStage(classifier).process(_noise(), []) == ()
+    assert classifier.asked == []

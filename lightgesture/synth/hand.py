@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.synth.raster import Canvas, Float32
-from lightgesture.synth.shading import Light, albedo, shade
+from lightgesture.synth.shading import Light, shade
 from lightgesture.synth.skeleton import MEAN_PROPORTIONS, FloatArray, HandPose, Proportions
 from lightgesture.synth.skin import Tone, paint_atlas, skin_tone
 from lightgesture.synth.surface import HAND, Forearm, HandView, hand_cones
@@ -98,11 +98,10 @@ def render_hand(
     canvas = Canvas(int(size[0] * factor), int(size[1] * factor))
     for cone in cones:
         canvas.draw(cone)
-    colour, gloss = albedo(canvas, look.atlas, look.tone, np.array(look.sleeve_bgr, np.float32))
-    radiance = shade(canvas, colour, gloss, light, big.px_per_mm)
+    sleeve = np.array(look.sleeve_bgr, np.float32)
+    radiance = shade(canvas, look.atlas, look.tone, sleeve, light, big.px_per_mm)
     cover = (canvas.material > 0).astype(np.float32)
     hand = (canvas.material == HAND).astype(np.float32)
-    radiance *= cover[..., None]
     if factor > 1.0:
         target = (int(size[0]), int(size[1]))
         radiance, cover, hand = (_reduced(layer, target) for layer in (radiance, cover, hand))

@@ -27,7 +27,7 @@ THUMB_BESIDE_INDEX = (40.0, 6.0, 55.0, 18.0)
 THUMB_ACROSS_PALM = (2.0, 36.0, 62.0, 52.0)
 THUMB_ACROSS_ROOTS = (12.0, 24.0, 60.0, 30.0)
 
-TOKEN_YAW_DEG = {"ok": 22.0, "pinch": 22.0, "grip": 25.0}
+TOKEN_YAW_DEG = {"ok": 28.0, "pinch": 24.0, "grip": 25.0}
 """How far people turn a right hand about its long axis to show the shape (a left hand: the other way)."""
 
 
@@ -44,11 +44,11 @@ def _loose(*rows: tuple[int, int, int, int]) -> FloatArray:
     return np.array(rows, np.float64)
 
 
-def _ring(thumb: tuple[float, ...], index: tuple[float, ...], relax: float) -> FloatArray:
-    """An ok ring; `relax` degrees of flexion grow from the middle to the little finger."""
+def _ring(thumb: tuple[float, ...], index: tuple[float, ...], spread: float) -> FloatArray:
+    """An ok ring; the other three fingers fan out by `spread` times their usual spread."""
     angles = _shape(thumb, 2, 3, 4)
     angles[1] = index
-    angles[2:, 0] += relax * np.array([1.0, 0.6, 0.3])
+    angles[2:, 1] *= spread
     return angles
 
 
@@ -63,9 +63,9 @@ TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
     "right": (_shape(THUMB_STRETCHED),),
     "pic": (_shape(THUMB_OUT, 1), _shape(THUMB_STRETCHED, 1)),
     "ok": (
-        _ring((22.0, 40.0, 12.0, 18.0), (52.0, 0.0, 55.0, 25.0), 6.0),
-        _ring((14.0, 38.0, 18.0, -15.0), (56.0, -9.0, 58.0, 2.0), 8.0),
-        _ring((20.0, 32.0, 18.0, 5.0), (48.0, -5.0, 66.0, 10.0), 3.0),
+        _ring((28.0, 36.0, 20.0, 30.0), (44.0, 4.0, 68.0, 32.0), 1.4),
+        _ring((22.0, 40.0, 12.0, 18.0), (52.0, 0.0, 55.0, 25.0), 1.6),
+        _ring((22.0, 40.0, 12.0, 18.0), (52.0, 0.0, 55.0, 25.0), 1.0),
     ),
 }
 OTHER_SHAPES: dict[str, FloatArray] = {

@@ -99,7 +99,7 @@ class _Tile:
 
 
 def unpack_texture(texture: NDArray[np.uint8]) -> tuple[Float32, Float32, Float32, Float32]:
-    """Layers (albedo factor, palmness, blood change, nail) of sampled atlas values (h, w, 4)."""
+    """Layers (albedo factor, palmness, blood change, nail) of sampled atlas values (..., 4)."""
     values = texture.astype(np.float32)
     return (
         values[..., 0] * np.float32(1 / 128),

@@ -1,0 +1,99 @@
+"""How the diver moves: arms and hands through a timeline, body adrift in six degrees of freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lightgesture.synth.diver import ArmState, DiverState
+from lightgesture.synth.poses import SIDE_THUMB_TOKENS, TOKEN_YAW_DEG, blend_poses, token_pose
+from lightgesture.synth.script import Hold, Moment, moment_at
+from lightgesture.synth.skeleton import FloatArray
+
+LOWERED_TURN = (60.0, 15.0, 150.0)
+"""Yaw, pitch and roll of a lowered hand: edge to the camera, fingers down."""
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """One diver's way of signing; lengths in millimetres, angles in degrees, frequencies in Hz.
+
+    wrist: where the left hand is held, body frame (the right one is its mirror image). spread_mm: how far it varies
+    from sign to sign. turn_deg: the same for the hand's yaw, pitch and roll, per unit of looseness. looseness: of
+    the shapes, see `poses.token_pose`. lowered: the left wrist at rest. drift_mm / drift_deg: standard deviation of
+    the body's drift. tremor_mm: of the hands. drift_hz: of both. dip_mm: how far hands sink between signs.
+    """
+
+    wrist: tuple[float, float, float] = (300.0, 70.0, 220.0)
+    lowered: tuple[float, float, float] = (330.0, -400.0, 120.0)
+    spread_mm: float = 18.0
+    turn_deg: tuple[float, float, float] = (11.0, 10.0, 9.0)
+    looseness: float = 0.8
+    distance_mm: float = 1300.0
+    height_mm: float = -60.0
+    drift_mm: tuple[float, float, float] = (14.0, 12.0, 30.0)
+    drift_deg: tuple[float, float, float] = (5.0, 3.0, 3.0)
+    tremor_mm: float = 3.0
+    drift_hz: float = 0.25
+    dip_mm: float = 45.0
+
+
+class Drift:
+    """Smooth random motion of unit variance in `size` dimensions: a sum of sines, the same at every call."""
+
+    def __init__(self, rng: np.random.Generator, size: int, frequency_hz: float, waves: int = 4) -> None:
+        self._frequency = frequency_hz * rng.uniform(0.3, 2.0, (size, waves))
+        self._phase = rng.uniform(0.0, 2.0 * np.pi, (size, waves))
+        self._amplitude = np.sqrt(2.0 / waves)
+
+    def at(self, time_s: float) -> FloatArray:
+        """Value (size,) at a time in seconds."""
+        waves = np.sin(2.0 * np.pi * self._frequency * time_s + self._phase)
+        return np.asarray(self._amplitude * waves.sum(axis=1))
+
+
+class Performance:
+    """A diver who goes through a timeline; `state(frame, time_s)` may be asked in any order."""
+
+    def __init__(self, timeline: Sequence[Hold], style: Style, rng: np.random.Generator) -> None:
+        self.timeline, self.style = tuple(timeline), style
+        self._keys = [tuple(self._arm(hold, side, rng) for side in (0, 1)) for hold in self.timeline]
+        self._body = Drift(rng, 6, style.drift_hz)
+        self._hands = Drift(rng, 6, 4.0 * style.drift_hz)
+
+    def state(self, frame: int, time_s: float) -> tuple[DiverState, Moment]:
+        """Where everything is in a frame, and the moment of the timeline it belongs to."""
+        moment, style = moment_at(self.timeline, frame), self.style
+        drift, shake = self._body.at(time_s), style.tremor_mm * self._hands.at(time_s)
+        arms = []
+        for hand in (0, 1):
+            arm = self._between(self._keys[moment.before][hand], self._keys[moment.after][hand], moment.part)
+            arms.append(ArmState(arm.wrist + shake[3 * hand : 3 * hand + 3], arm.turn, arm.pose))
+        position = np.array([0.0, style.height_mm, style.distance_mm]) + drift[:3] * np.array(style.drift_mm)
+        rotation = drift[3:] * np.array(style.drift_deg)
+        return DiverState(position, rotation, arms[0], arms[1]), moment
+
+    def _arm(self, hold: Hold, hand: int, rng: np.random.Generator) -> ArmState:
+        """How one hand (0 left, 1 right) is held in a hold."""
+        style, sign = self.style, np.array([1.0 if hand == 0 else -1.0, 1.0, 1.0])
+        spread = rng.normal(0.0, style.spread_mm, 3)
+        turn = rng.normal(0.0, style.looseness, 3) * np.array(style.turn_deg)
+        if hold.pair is None:
+            pose = token_pose("relaxed", rng, style.looseness)
+            return ArmState(np.array(style.lowered) * sign + spread, turn + np.array(LOWERED_TURN), pose)
+        token = hold.pair[hand]
+        pose = token_pose(token, rng, style.looseness)
+        # `left` shows the palm and `right` the back of either hand: so their thumbs point in and out.
+        facing = 180.0 if token == SIDE_THUMB_TOKENS[1] else TOKEN_YAW_DEG.get(token, 0.0)
+        return ArmState(np.array(style.wrist) * sign + spread, turn + np.array([facing, 0.0, 0.0]), pose)
+
+    def _between(self, old: ArmState, new: ArmState, part: float) -> ArmState:
+        if old is new or part <= 0.0:
+            return old
+        eased = part * part * (3.0 - 2.0 * part)
+        wrist = old.wrist + eased * (new.wrist - old.wrist)
+        wrist = wrist - np.array([0.0, 4.0 * part * (1.0 - part) * self.style.dip_mm, 0.0])
+        turn = old.turn + eased * (new.turn - old.turn)
+        return ArmState(wrist, turn, blend_poses(old.pose, new.pose, part))

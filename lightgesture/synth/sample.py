@@ -1,0 +1,53 @@
+"""Writes the clip that comes with the package: one diver, one sentence, one seed.
+
+Run `python -m lightgesture.synth.sample OUT.mp4` to make it again; the default output is the bundled file.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import cv2
+
+from lightgesture.synth.scene import Scene
+from lightgesture.synth.spec import BackdropSpec, CameraSpec, DiverSpec, MotionSpec, SceneSpec, WaterSpec
+
+SAMPLE_SPEC = SceneSpec(
+    seed=4,
+    sentences=("STOP HOVER 50 GO",),
+    hold=(24, 27),
+    passage=(9, 10),
+    water=WaterSpec(kind="III", depth_m=4.0, turbidity=0.16),
+    backdrop=BackdropSpec(floor="sand", floor_m=1.7, caustic=0.25),
+    diver=DiverSpec(monk=3.6, blood=1.1, distance_mm=1150.0, looseness=0.35, sleeve_mm=40.0),
+    motion=MotionSpec(drift=0.6, tremor_mm=1.5),
+    camera=CameraSpec(noise=0.3, balance=0.35, drift=0.008),
+)
+DEFAULT_OUTPUT = Path(__file__).resolve().parent.parent / "data" / "sample.mp4"
+
+
+def write_video(scene: Scene, path: Path) -> int:
+    """Write all frames of a scene as MPEG-4 video; returns their number. The file appears only when complete."""
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    writer = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), scene.spec.fps, scene.spec.size)
+    if not writer.isOpened():
+        raise OSError(f"{path}: OpenCV cannot write this kind of video; use a name that ends in .mp4")
+    try:
+        for frame in scene.frames():
+            writer.write(frame.image)
+    finally:
+        writer.release()
+    os.replace(partial, path)
+    return scene.frame_count
+
+
+def main() -> None:
+    """Write the sample to the path given, or over the bundled one."""
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else DEFAULT_OUTPUT
+    write_video(Scene(SAMPLE_SPEC), path)
+
+
+if __name__ == "__main__":
+    main()

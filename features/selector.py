@@ -36,11 +36,11 @@ class SelectorSettings:
     """
 
     candidates: int = 8
-    distinct_iou: float = 0.5
+    distinct_iou: float = 0.3
     alternatives: int = 3
     alternative_iou: float = 0.35
     apart_iou: float = 0.1
-    pair_score: float = 0.3
+    pair_score: float = 0.25
     single_score: float = 0.5
     alone_confidence: float = 0.8
 

@@ -46,7 +46,7 @@ class Backdrop:
     ) -> None:
         self.look, self.water, self.size = look, water, size
         self._caustics = caustics(rng, TEXTURE_SIZE)
-        self._ripples = periodic_noise(rng, TEXTURE_SIZE, 1.9)
+        self.ripples = periodic_noise(rng, TEXTURE_SIZE, 1.9)
         self._rows, self._columns = np.mgrid[0 : size[1] : 2, 0 : size[0] : 2].astype(np.float32)
         self._open = self._open_water()
         self._floor = self._plane(look.floor_m, focal, below=True) if look.floor else None
@@ -110,8 +110,8 @@ class Backdrop:
         assert self._surface is not None
         x, z, seen = self._surface
         drift = np.float32(0.25 * time_s)
-        wave = self._sample(self._ripples, x * np.float32(0.7) + drift, z * np.float32(1.4), 3.0)
-        wave += np.float32(0.6) * self._sample(self._ripples, x - drift, z * np.float32(2.0) + drift, 1.3)
+        wave = self._sample(self.ripples, x * np.float32(0.7) + drift, z * np.float32(1.4), 3.0)
+        wave += np.float32(0.6) * self._sample(self.ripples, x - drift, z * np.float32(2.0) + drift, 1.3)
         bright = np.clip(0.5 + 0.4 * wave, 0.0, 1.6)
         plane = bright[..., None] * self.water.light * np.float32(0.75) + self.water.veil * np.float32(0.5)
         picture *= 1.0 - seen

@@ -18,6 +18,8 @@ from lightgesture.synth.skeleton import FloatArray
 from lightgesture.synth.water import Water
 
 SUIT, ACCENT, SKIN, HOOD, MASK, GLASS, RUBBER = range(1, 8)
+MOUTH = (0.0, 160.0, 125.0)
+"""Where the regulator lets bubbles out."""
 UPPER_ARM_MM, FOREARM_MM = 300.0, 265.0
 SHOULDER = np.array([178.0, -15.0, 0.0])
 BODY_BLEND_MM, SMALL_BLEND_MM = 28.0, 4.0
@@ -160,7 +162,7 @@ def _add_arm(
         cuff = shoulder + 0.9 * (elbow - shoulder)
         parts.add(SUIT, cuff, 50, elbow + 0.05 * (wrist - elbow), 49)
     near = elbow + 0.9 * (wrist - elbow)
-    parts.add(lower, elbow, 45, near, 29, 8.0)
+    parts.add(lower, elbow, 45, near, 31, 8.0)
 
 
 def render_body(
@@ -220,4 +222,7 @@ def _shaded(
         lit = water.see_points(lit, np.asarray(away, np.float32))
     radiance = np.zeros((*canvas.height.shape, 3), np.float32)
     radiance.reshape(-1, 3)[pixels] = lit
-    return radiance, mask.astype(np.float32)
+    # A small blur hides the steps of the coarser grid at the outline.
+    smooth = (cv2.blur(layer, (3, 3)) for layer in (radiance, mask.astype(np.float32)))
+    radiance, cover = (np.asarray(layer, np.float32) for layer in smooth)
+    return radiance, cover

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lightgesture.synth.body import SHOULDER, BodyLook, Camera, elbow_position, render_body, to_camera
-from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
+from lightgesture.synth.hand import Box, HandImage, HandLook, mask_box, render_hand
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.shading import Light
 from lightgesture.synth.skeleton import (
@@ -66,7 +66,7 @@ class DiverLook:
 
 @dataclass(frozen=True, slots=True)
 class DrawnHand:
-    """Truth of one drawn hand: own side, outline box in the picture and the share of the outline inside it."""
+    """Truth of one drawn hand: own side, box of the outline inside the picture, and the share of it that is inside."""
 
     side: str
     box: Box
@@ -134,7 +134,7 @@ def draw_arm_hand(
         rotation, (float(image[0, 0]), float(image[0, 1])), float(scale[0]), float(points[0, 2]), left
     )
     length = 90.0 if look.sleeve_mm is None else look.sleeve_mm + 45.0
-    forearm = Forearm(length_mm=length, sleeve_mm=look.sleeve_mm, sleeve_gap=3.5)
+    forearm = Forearm(length_mm=length, sleeve_mm=look.sleeve_mm, sleeve_gap=2.0)
     hand = render_hand(pose, view, look.left if left else look.right, light, forearm)
     return dissolve(hand, image[0], image[1], length / float(np.linalg.norm(points[1] - points[0]))), distance
 
@@ -152,8 +152,11 @@ def dissolve(hand: HandImage, wrist: FloatArray, elbow: FloatArray, end: float) 
 
 def draw_diver(
     picture: Float32, state: DiverState, look: DiverLook, camera: Camera, light: Light, water: Water | None
-) -> list[DrawnHand]:
-    """Draw the diver over a linear picture (in place), through `water` if given; returns the truth of both hands."""
+) -> tuple[list[DrawnHand], Float32]:
+    """Draw the diver over a linear picture (in place), through `water` if given.
+
+    Returns the truth of both hands and the coverage (h, w) of the whole diver.
+    """
     size = (picture.shape[1], picture.shape[0])
     wrists = (state.left.wrist, state.right.wrist)
     radiance, cover = render_body(
@@ -166,14 +169,17 @@ def draw_diver(
         if water is not None:
             hand = replace(hand, radiance=water.see_through(hand.radiance, hand.alpha, distance))
         hand.paste(picture)
-    return [DrawnHand(side, hand.box, visible_share(hand, size)) for hand, _, side in drawn]
+        hand.cover(cover)
+    return [_seen(side, hand, size) for hand, _, side in drawn], cover
 
 
-def visible_share(hand: HandImage, size: tuple[int, int]) -> float:
-    """Share of a hand's outline inside a picture of `size` (width, height)."""
+def _seen(side: str, hand: HandImage, size: tuple[int, int]) -> DrawnHand:
+    """Truth of a hand in a picture of `size` (width, height): box of the part inside, and its share."""
     total = float(hand.hand.sum())
     x0, y0 = (max(-offset, 0) for offset in hand.origin)
-    x1, y1 = size[0] - hand.origin[0], size[1] - hand.origin[1]
-    if total <= 0.0 or x1 <= 0 or y1 <= 0:
-        return 0.0
-    return float(hand.hand[y0:y1, x0:x1].sum()) / total
+    x1, y1 = max(size[0] - hand.origin[0], x0), max(size[1] - hand.origin[1], y0)
+    inside = hand.hand[y0:y1, x0:x1]
+    if total <= 0.0 or inside.size == 0:
+        return DrawnHand(side, (0, 0, 0, 0), 0.0)
+    box = mask_box(inside, (hand.origin[0] + x0, hand.origin[1] + y0))
+    return DrawnHand(side, box, float(inside.sum()) / total if box[2] * box[3] else 0.0)

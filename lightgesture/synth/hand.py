@@ -51,16 +51,23 @@ class HandImage:
 
     def paste(self, picture: Float32) -> None:
         """Lay the hand over a linear float picture (in place), clipped at its edges."""
+        target, part = self._overlap(picture)
+        picture[target] *= 1.0 - self.alpha[part][..., None]
+        picture[target] += self.radiance[part]
+
+    def cover(self, coverage: Float32) -> None:
+        """Add the hand to a coverage picture (in place)."""
+        target, part = self._overlap(coverage)
+        np.maximum(coverage[target], self.alpha[part], out=coverage[target])
+
+    def _overlap(self, picture: Float32) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+        """Where the hand lies in a picture, and which part of the hand that is."""
         rows, columns = self.alpha.shape
         x0, y0 = max(self.origin[0], 0), max(self.origin[1], 0)
-        x1 = min(self.origin[0] + columns, picture.shape[1])
-        y1 = min(self.origin[1] + rows, picture.shape[0])
-        if x0 >= x1 or y0 >= y1:
-            return
-        part = np.s_[y0 - self.origin[1] : y1 - self.origin[1], x0 - self.origin[0] : x1 - self.origin[0]]
-        target = picture[y0:y1, x0:x1]
-        target *= 1.0 - self.alpha[part][..., None]
-        target += self.radiance[part]
+        x1 = max(min(self.origin[0] + columns, picture.shape[1]), x0)
+        y1 = max(min(self.origin[1] + rows, picture.shape[0]), y0)
+        dx, dy = self.origin
+        return np.s_[y0:y1, x0:x1], np.s_[y0 - dy : y1 - dy, x0 - dx : x1 - dx]
 
 
 def encode(linear: Float32) -> NDArray[np.uint8]:

@@ -24,6 +24,7 @@ class Style:
     from sign to sign. turn_deg: the same for the hand's yaw, pitch and roll, per unit of looseness. looseness: of
     the shapes, see `poses.token_pose`. lowered: the left wrist at rest. drift_mm / drift_deg: standard deviation of
     the body's drift. tremor_mm: of the hands. drift_hz: of both. dip_mm: how far hands sink between signs.
+    approach_mm: how much nearer the diver is at the end.
     """
 
     wrist: tuple[float, float, float] = (300.0, 70.0, 220.0)
@@ -38,6 +39,7 @@ class Style:
     tremor_mm: float = 3.0
     drift_hz: float = 0.25
     dip_mm: float = 45.0
+    approach_mm: float = 0.0
 
 
 class Drift:
@@ -57,7 +59,10 @@ class Drift:
 class Performance:
     """A diver who goes through a timeline; `state(frame, time_s)` may be asked in any order."""
 
-    def __init__(self, timeline: Sequence[Hold], style: Style, rng: np.random.Generator) -> None:
+    def __init__(
+        self, timeline: Sequence[Hold], style: Style, rng: np.random.Generator, length_s: float
+    ) -> None:
+        self._length_s = max(length_s, 1e-3)
         self.timeline, self.style = tuple(timeline), style
         self._keys = [tuple(self._arm(hold, side, rng) for side in (0, 1)) for hold in self.timeline]
         self._body = Drift(rng, 6, style.drift_hz)
@@ -71,7 +76,8 @@ class Performance:
         for hand in (0, 1):
             arm = self._between(self._keys[moment.before][hand], self._keys[moment.after][hand], moment.part)
             arms.append(ArmState(arm.wrist + shake[3 * hand : 3 * hand + 3], arm.turn, arm.pose))
-        position = np.array([0.0, style.height_mm, style.distance_mm]) + drift[:3] * np.array(style.drift_mm)
+        distance = style.distance_mm - style.approach_mm * min(time_s / self._length_s, 1.0)
+        position = np.array([0.0, style.height_mm, distance]) + drift[:3] * np.array(style.drift_mm)
         rotation = drift[3:] * np.array(style.drift_deg)
         return DiverState(position, rotation, arms[0], arms[1]), moment
 

@@ -5,12 +5,10 @@ Run `python -m lightgesture.synth.sample OUT.mp4` to make it again; the default 
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 
-import cv2
-
+from lightgesture.synth.output import video_writer
 from lightgesture.synth.scene import Scene
 from lightgesture.synth.spec import BackdropSpec, CameraSpec, DiverSpec, MotionSpec, SceneSpec, WaterSpec
 
@@ -28,26 +26,13 @@ SAMPLE_SPEC = SceneSpec(
 DEFAULT_OUTPUT = Path(__file__).resolve().parent.parent / "data" / "sample.mp4"
 
 
-def write_video(scene: Scene, path: Path) -> int:
-    """Write all frames of a scene as MPEG-4 video; returns their number. The file appears only when complete."""
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
-    writer = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), scene.spec.fps, scene.spec.size)
-    if not writer.isOpened():
-        raise OSError(f"{path}: OpenCV cannot write this kind of video; use a name that ends in .mp4")
-    try:
+def write_sample(path: Path) -> None:
+    """Render the sample to `path`."""
+    scene = Scene(SAMPLE_SPEC)
+    with video_writer(path, scene.spec.fps, scene.spec.size) as put:
         for frame in scene.frames():
-            writer.write(frame.image)
-    finally:
-        writer.release()
-    os.replace(partial, path)
-    return scene.frame_count
-
-
-def main() -> None:
-    """Write the sample to the path given, or over the bundled one."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else DEFAULT_OUTPUT
-    write_video(Scene(SAMPLE_SPEC), path)
+            put(frame.image)
 
 
 if __name__ == "__main__":
-    main()
+    write_sample(Path(sys.argv[1]) if len(sys.argv) > 1 else DEFAULT_OUTPUT)

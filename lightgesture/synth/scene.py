@@ -14,17 +14,19 @@ from numpy.typing import NDArray
 from lightgesture.fsm import Grammar, load_grammar
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
-from lightgesture.synth.body import BodyLook, Camera
+from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
 from lightgesture.synth.camera import CameraLook, Sensor
-from lightgesture.synth.diver import DiverLook, DrawnHand, draw_diver
+from lightgesture.synth.diver import DiverLook, DiverState, DrawnHand, draw_diver, rotation_matrix
 from lightgesture.synth.hand import HandLook
 from lightgesture.synth.motion import Performance, Style
+from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.script import Hold, Timing, make_timeline, tokens_at
 from lightgesture.synth.shading import Light
 from lightgesture.synth.skeleton import sample_proportions
 from lightgesture.synth.skin import glove_tone, paint_atlas, skin_tone
 from lightgesture.synth.spec import DiverSpec, SceneSpec
-from lightgesture.synth.water import make_water
+from lightgesture.synth.specks import Bubbles, Particles, mirror_in_surface
+from lightgesture.synth.water import Water, make_water
 
 STREAMS = ("script", "diver", "motion", "backdrop", "camera", "drawn", "specks")
 MIN_VISIBLE = 0.6
@@ -48,23 +50,44 @@ def seed_streams(seed: int) -> dict[str, np.random.Generator]:
 class Scene:
     """A rendered dive of known truth."""
 
-    def __init__(self, spec: SceneSpec, grammar: Grammar | None = None, source: str | None = None) -> None:
+    def __init__(self, spec: SceneSpec, grammar: Grammar | None = None) -> None:
         self.spec, self.grammar = spec, grammar or load_grammar()
-        self.source = source
         streams = seed_streams(spec.seed)
         timing = Timing(spec.hold, spec.passage, spec.pause)
         self.timeline: list[Hold] = make_timeline(self.grammar, spec.sentences, timing, streams["script"])
         self.frame_count = self.timeline[-1].end
-        self._performance = Performance(self.timeline, _style(spec), streams["motion"])
+        self._performance = Performance(
+            self.timeline, _style(spec), streams["motion"], self.frame_count / spec.fps
+        )
         self._camera = Camera(spec.camera.focal * spec.size[0], (0.5 * spec.size[0], 0.5 * spec.size[1]))
         self._look = diver_look(spec.diver, streams["diver"])
-        self._water = make_water(spec.water.kind, spec.water.depth_m, spec.water.turbidity)
-        self._light = _water_light(self._water.light, self._water.veil)
-        back = spec.backdrop
-        look = BackdropLook(back.floor, back.floor_m, back.surface_m, back.horizon, caustic=back.caustic)
-        self._backdrop = Backdrop(look, self._water, self._camera.focal, spec.size, streams["backdrop"])
-        self._sensor = Sensor(_camera_look(spec), streams["camera"])
+        self._build_surroundings(streams)
+        blur = spec.camera.blur_px
+        if self._water is not None:
+            blur = float(
+                np.hypot(blur, self._water.blur_sigma(spec.diver.distance_mm / 1000.0, spec.size[0]))
+            )
+        self._sensor = Sensor(_camera_look(spec, blur), streams["camera"])
         self._sensor.meter(self._backdrop.frame(0.0))
+
+    def _build_surroundings(self, streams: dict[str, np.random.Generator]) -> None:
+        spec, back = self.spec, self.spec.backdrop
+        self._particles: Particles | None = None
+        self._bubbles: Bubbles | None = None
+        self._water: Water | None = None
+        self._backdrop: Backdrop | Room
+        if spec.water.kind == "none":
+            room = Room(RoomLook(**spec.room.model_dump()), spec.size, streams["backdrop"])
+            self._backdrop, self._light = room, room.light(streams["backdrop"])
+            return
+        water = make_water(spec.water.kind, spec.water.depth_m, spec.water.turbidity)
+        look = BackdropLook(back.floor, back.floor_m, back.surface_m, back.horizon, caustic=back.caustic)
+        self._water, self._light = water, _water_light(water.light, water.veil)
+        self._backdrop = Backdrop(look, water, self._camera.focal, spec.size, streams["backdrop"])
+        if back.particles:
+            self._particles = Particles(back.particles, self._camera, spec.size, streams["specks"])
+        if back.bubbles > 0.0:
+            self._bubbles = Bubbles(back.bubbles, self._camera, streams["specks"])
 
     def frames(self) -> Iterator[SceneFrame]:
         """All frames in order."""
@@ -76,13 +99,35 @@ class Scene:
         time_s = index / self.spec.fps
         state, moment = self._performance.state(index, time_s)
         picture = self._backdrop.frame(time_s)
-        drawn = draw_diver(picture, state, self._look, self._camera, self._light, self._water)
+        drawn, cover = draw_diver(picture, state, self._look, self._camera, self._light, self._water)
+        if self._water is not None:
+            self._draw_water_effects(picture, cover, state, time_s, self._water)
         image = self._sensor.expose(picture, index, time_s)
         tokens = tokens_at(self.timeline, moment)
         hands = tuple(
             hand for hand in (_truth(item, token) for item, token in zip(drawn, tokens, strict=True)) if hand
         )
-        return SceneFrame(image, FrameRecord(source=self.source, frame=index, time_s=time_s, hands=hands))
+        return SceneFrame(image, FrameRecord(source=None, frame=index, time_s=time_s, hands=hands))
+
+    def _draw_water_effects(
+        self,
+        picture: NDArray[np.float32],
+        cover: NDArray[np.float32],
+        state: DiverState,
+        time_s: float,
+        water: Water,
+    ) -> None:
+        back = self.spec.backdrop
+        if back.surface_m > 0.0 and isinstance(self._backdrop, Backdrop):
+            drop = self._camera.focal * back.surface_m * 1000.0 / float(state.position[2])
+            line = back.horizon * self.spec.size[1] - drop
+            mirror_in_surface(picture, cover, line, self._backdrop.ripples, time_s)
+        if self._bubbles is not None:
+            rotation = rotation_matrix(state.rotation)
+            mouth = to_camera(np.array([MOUTH]), rotation, state.position)[0]
+            self._bubbles.draw(picture, time_s, mouth, water)
+        if self._particles is not None:
+            self._particles.draw(picture, time_s, water)
 
 
 def _truth(drawn: DrawnHand, token: str | None) -> Hand | None:
@@ -114,20 +159,22 @@ def diver_look(spec: DiverSpec, rng: np.random.Generator) -> DiverLook:
 def _style(spec: SceneSpec) -> Style:
     calm, amount = Style(), spec.motion.drift
     return Style(
+        wrist=spec.diver.wrist_mm,
         looseness=spec.diver.looseness,
         distance_mm=spec.diver.distance_mm,
         height_mm=spec.diver.height_mm,
         drift_mm=(calm.drift_mm[0] * amount, calm.drift_mm[1] * amount, calm.drift_mm[2] * amount),
         drift_deg=(calm.drift_deg[0] * amount, calm.drift_deg[1] * amount, calm.drift_deg[2] * amount),
         tremor_mm=spec.motion.tremor_mm,
+        approach_mm=spec.motion.approach_mm,
     )
 
 
-def _camera_look(spec: SceneSpec) -> CameraLook:
+def _camera_look(spec: SceneSpec, blur_px: float) -> CameraLook:
     camera, good = spec.camera, CameraLook()
     return CameraLook(
         target=camera.exposure, balance=camera.balance, shot=good.shot * camera.noise, read=good.read * camera.noise,
-        blur_px=camera.blur_px, motion_px=camera.motion_px, jpeg=camera.jpeg, drift=camera.drift,
+        blur_px=blur_px, motion_px=camera.motion_px, jpeg=camera.jpeg, drift=camera.drift,
     )  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """What a scene is made of: a small TOML or a seed, checked before anything is drawn.
 
-Every number has its unit and range beside it. A field left out of the TOML is drawn from the seed where it says
-"drawn", so that one line, `seed = 5`, is a whole scene, and each further line pins one thing down.
+Every number has its unit and range beside it. `variety.draw_spec` draws a whole scene from a seed; a TOML starts from
+the defaults written here and pins down what it names.
 """
 
 from __future__ import annotations
@@ -44,10 +44,22 @@ class BackdropSpec(_Part):
     bubbles: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
 
 
+class RoomSpec(_Part):
+    """Used where water.kind is "none". wall, pieces, window, lamps, level: as `room.RoomLook`."""
+
+    wall: Annotated[int, Field(ge=0, le=5)] = 0
+    pieces: Annotated[int, Field(ge=0, le=60)] = 9
+    window: Annotated[float, Field(ge=0.0, le=6.0)] = 0.0
+    lamps: Annotated[int, Field(ge=0, le=10)] = 0
+    level: Annotated[float, Field(ge=0.02, le=2.0)] = 1.0
+
+
 class DiverSpec(_Part):
     """monk: skin tone 1 (very light) .. 10 (very dark). blood: units of haemoglobin. glove: linear BGR colour, none
     for bare hands. suit, accent: linear BGR. sleeve_mm: bare forearm before the sleeve, none for bare arms.
-    distance_mm: to the camera. looseness: how carelessly signs are made, 0..2. The rest: what is worn.
+    distance_mm: to the camera. height_mm: of the shoulders above the optical axis. looseness: how carelessly signs
+    are made, 0..2. wrist_mm: where the left wrist is held (body frame, the right one mirrored). The rest: what is
+    worn.
     """
 
     monk: Annotated[float, Field(ge=1.0, le=10.0)] = 4.0
@@ -63,6 +75,7 @@ class DiverSpec(_Part):
     distance_mm: Annotated[float, Field(ge=500.0, le=6000.0)] = 1300.0
     height_mm: Annotated[float, Field(ge=-1500.0, le=1500.0)] = -60.0
     looseness: Annotated[float, Field(ge=0.0, le=2.0)] = 0.8
+    wrist_mm: tuple[float, float, float] = (300.0, 70.0, 220.0)
 
 
 class MotionSpec(_Part):
@@ -105,6 +118,7 @@ class SceneSpec(_Part):
     pause: Range = (12, 24)
     water: WaterSpec = WaterSpec()
     backdrop: BackdropSpec = BackdropSpec()
+    room: RoomSpec = RoomSpec()
     diver: DiverSpec = DiverSpec()
     motion: MotionSpec = MotionSpec()
     camera: CameraSpec = CameraSpec()

@@ -69,3 +69,15 @@ def rocks(rng: np.random.Generator, size: int) -> Float32:
 
 
 FLOORS = {"sand": sand, "tiles": tiles, "rocks": rocks}
+
+
+def wood(rng: np.random.Generator, rows: int, columns: int) -> Float32:
+    """Wood grain (rows, columns), mean about 1, running along the longer side."""
+    long, across = max(rows, columns), min(rows, columns)
+    position = np.linspace(0.0, rng.uniform(6.0, 25.0), across, dtype=np.float32)[:, None]
+    bend = cv2.resize(
+        rng.standard_normal((3, 4)).astype(np.float32), (long, across), interpolation=cv2.INTER_CUBIC
+    )
+    value = 1.0 + 0.14 * np.sin(2.0 * np.pi * position + 2.5 * bend) + 0.06 * bend
+    value += 0.04 * rng.standard_normal((across, long)).astype(np.float32)
+    return np.asarray(value if columns >= rows else value.T, np.float32)

@@ -1,7 +1,7 @@
 """Time of the pipeline on one machine: `python -m lightgesture.benchmarks.latency`.
 
 Frames are read and scaled to 640 x 480 before the clock starts. Every clip is run with each number of
-OpenCV threads by a pipeline of its own, after a warm-up; the number that was set before is restored.
+threads by a pipeline of its own, after a warm-up; the numbers that were set before are restored.
 """
 
 import argparse
@@ -49,7 +49,7 @@ class LatencySettings:
     size: width and height of the frames, pixels; 640 x 480 is that of the published figures.
     rounds: passes over a clip; more make the percentiles steadier.
     warm_up: frames before the clock starts, for caches and the birth of tracks.
-    threads: numbers of OpenCV threads to measure.
+    threads: numbers of threads to measure, of OpenCV and of NumPy's linear algebra alike.
     most_frames: frames of a clip that are used.
     sequence: the group of the data folder that is timed beside the bundled clip.
     """
@@ -92,12 +92,20 @@ class TimedPipeline(Pipeline):
 
 
 @contextmanager
-def opencv_threads(count: int) -> Iterator[None]:
-    """Set OpenCV's number of threads, and restore it."""
+def limited_threads(count: int) -> Iterator[None]:
+    """Give OpenCV and the linear algebra behind NumPy so many threads, and restore what was set before.
+
+    Where other work keeps the cores busy, the spinning threads of the latter can multiply the time of a
+    small matrix product, so that one without the other would measure chance.
+    """
+    # It comes with scikit-learn.
+    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+
     before = cv2.getNumThreads()
     cv2.setNumThreads(count)
     try:
-        yield
+        with threadpool_limits(count, user_api="blas"):
+            yield
     finally:
         cv2.setNumThreads(before)
 
@@ -144,7 +152,7 @@ def measure(
     rows = []
     for clip, frames in clips.items():
         for threads in settings.threads:
-            with opencv_threads(threads):
+            with limited_threads(threads):
                 times = dict(time_pipeline(frames, model, settings))
                 if paper is not None:
                     times[PAPER] = time_calls(paper().process, frames, settings)

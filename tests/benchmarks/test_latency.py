@@ -13,8 +13,8 @@ from lightgesture.benchmarks.latency import (
     SINGLE,
     LatencySettings,
     RecordingClock,
+    limited_threads,
     measure,
-    opencv_threads,
     read_clips,
     time_calls,
 )
@@ -90,12 +90,12 @@ def test_time_goes_on_from_round_to_round(fake_pipelines):
     assert fake_pipelines[0].last == pytest.approx(6 / 30)
 
 
-def test_opencv_threads_are_restored_even_after_an_error():
+def test_threads_are_restored_even_after_an_error():
     before = cv2.getNumThreads()
     inside = []
 
     def fail():
-        with opencv_threads(1):
+        with limited_threads(1):
             inside.append(cv2.getNumThreads())
             raise ZeroDivisionError
 

@@ -20,6 +20,9 @@ Picture = NDArray[np.uint8]
 NOISE_FIELD = 1024
 """Side of the stored noise field from which each frame takes another window, pixels."""
 
+CORNERS = 4096
+"""Number of different windows; noise comes round again after as many frames."""
+
 
 @dataclass(frozen=True, slots=True)
 class CameraLook:
@@ -44,10 +47,10 @@ class CameraLook:
 class Sensor:
     """Turns linear pictures into 8-bit frames; the same frame number gives the same noise."""
 
-    def __init__(self, look: CameraLook, rng: np.random.Generator) -> None:
+    def __init__(self, look: CameraLook, rng: np.random.Generator, field_size: int = NOISE_FIELD) -> None:
         self.look = look
-        self._noise = rng.standard_normal((NOISE_FIELD, NOISE_FIELD, 3), np.float32)
-        self._corners = rng.integers(0, NOISE_FIELD, (4096, 2))
+        self._noise = rng.standard_normal((field_size, field_size, 3), np.float32)
+        self._corners = rng.integers(0, field_size, (CORNERS, 2))
         self._drift = Drift(rng, 4, 0.15)
         self._angle = float(rng.uniform(0.0, np.pi))
         self._gain: Float32 | None = None

@@ -1,0 +1,224 @@
+"""Single labelled hands for training a classifier, in the form of real collections of hand crops.
+
+Each sample is a square picture around one upright hand, its side 1.6 times the larger side of the box round the 21
+landmarks. `left` and `right` say where the thumb points in the picture, whichever hand and face it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.synth.backdrop import Backdrop, BackdropLook
+from lightgesture.synth.camera import CameraLook, Sensor
+from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
+from lightgesture.synth.poses import (
+    OTHER_SHAPES,
+    SIDE_THUMB_TOKENS,
+    TOKEN_YAW_DEG,
+    TOKENS,
+    shows_palm,
+    token_pose,
+)
+from lightgesture.synth.raster import Float32
+from lightgesture.synth.room import Room, RoomLook
+from lightgesture.synth.shading import Light
+from lightgesture.synth.skeleton import FloatArray, rotation_x, rotation_y, rotation_z, sample_proportions
+from lightgesture.synth.skin import glove_tone, paint_atlas, skin_tone
+from lightgesture.synth.surface import Forearm, HandView
+from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
+from lightgesture.synth.water import JERLOV_BGR, Water, make_water
+
+NONE = "none"
+MARGIN = 1.6
+"""Side of a crop against the larger side of the landmark box."""
+
+
+@dataclass(frozen=True, slots=True)
+class CropSettings:
+    """How samples vary. size: range of the crop's side in pixels. palm: share of palms among tokens other than
+    left/right. glove, water, none: shares of gloved hands, of hands seen through water and of shapes that are no
+    token. yaw, pitch, roll: standard deviations in degrees. looseness: range, see `poses.token_pose`. backdrops:
+    number of surroundings of each kind, drawn once.
+    """
+
+    size: tuple[int, int] = (40, 112)
+    palm: float = 0.75
+    glove: float = 0.03
+    water: float = 0.4
+    none: float = 0.1
+    yaw: float = 20.0
+    pitch: float = 14.0
+    roll: float = 10.0
+    looseness: tuple[float, float] = (0.4, 1.4)
+    backdrops: int = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Crop:
+    """image: uint8 (n, n, 3) BGR. token: one of the ten or "none". box: outline of the hand, pixels of `image`.
+    landmarks: (21, 2), pixels. left: a left hand. palm: its palm is seen.
+    """
+
+    image: NDArray[np.uint8]
+    token: str
+    box: Box
+    landmarks: FloatArray
+    left: bool
+    palm: bool
+
+
+class CropMaker:
+    """Draws crops from one stream; `sample(token)` for one, `samples(count)` for a balanced stream."""
+
+    def __init__(self, seed: int, purpose: Purpose = "train", settings: CropSettings | None = None) -> None:
+        self.settings = settings or CropSettings()
+        self._rng = stream(seed, purpose)
+        self._rooms, self._dives = self._surroundings()
+
+    def samples(self, count: int) -> Iterator[Crop]:
+        """`count` crops, tokens in turn, with the settings' share of `none` strewn in."""
+        for index in range(count):
+            if self._rng.uniform() < self.settings.none:
+                yield self.sample(NONE)
+            else:
+                yield self.sample(TOKENS[index % len(TOKENS)])
+
+    def sample(self, token: str) -> Crop:
+        """One crop of a token, or of a shape outside the language for "none"."""
+        rng, settings = self._rng, self.settings
+        shape = str(rng.choice(list(OTHER_SHAPES))) if token == NONE else token
+        left = bool(rng.uniform() < 0.5)
+        palm = bool(rng.uniform() < settings.palm)
+        if token in SIDE_THUMB_TOKENS:
+            palm = shows_palm(token, left, token == SIDE_THUMB_TOKENS[0])
+        water = self._draw_water()
+        hand = self._render(shape, left, palm, water)
+        side = int(rng.integers(settings.size[0], settings.size[1] + 1))
+        return self._framed(hand, token, side, left, palm, water)
+
+    def _surroundings(self) -> tuple[list[Float32], list[Float32]]:
+        rng, size = self._rng, (320, 240)
+        rooms, dives = [], []
+        for _ in range(self.settings.backdrops):
+            look = RoomLook(
+                wall=int(rng.integers(6)), pieces=int(rng.integers(0, 14)), lamps=int(rng.integers(3)),
+                window=float(rng.uniform(0.8, 2.5)) if rng.uniform() < 0.3 else 0.0,
+                level=float(rng.uniform(0.3, 1.2)), blur=float(rng.uniform(0.0, 0.02)),
+            )  # fmt: skip
+            rooms.append(Room(look, size, rng).frame(0.0))
+            floor = str(rng.choice(("sand", "tiles", "rocks")))
+            surface = float(rng.uniform(0.3, 0.9)) if rng.uniform() < 0.5 else 0.0
+            dive = BackdropLook(floor, float(rng.uniform(0.5, 3.0)), surface, float(rng.uniform(0.2, 0.7)))
+            water = make_water(str(rng.choice(list(JERLOV_BGR)[:7])), 2.0, float(rng.uniform(0.05, 0.6)))
+            dives.append(Backdrop(dive, water, 280.0, size, rng).frame(float(rng.uniform(0.0, 9.0))))
+        return rooms, dives
+
+    def _draw_water(self) -> Water | None:
+        rng = self._rng
+        if rng.uniform() >= self.settings.water:
+            return None
+        kind = str(rng.choice(list(JERLOV_BGR)[:9]))
+        return make_water(kind, float(rng.uniform(0.5, 8.0)), float(np.exp(rng.uniform(-3.0, 0.0))))
+
+    def _render(self, shape: str, left: bool, palm: bool, water: Water | None) -> HandImage:
+        rng, settings = self._rng, self.settings
+        if rng.uniform() < settings.glove:
+            tone = glove_tone(GLOVES[int(rng.integers(len(GLOVES)))])
+        else:
+            tone = skin_tone(
+                float(rng.uniform(1.0, 9.5)), float(rng.uniform(0.3, 1.8)), float(rng.uniform(0.1, 0.9))
+            )
+        sleeve = SUITS[int(rng.integers(len(SUITS)))]
+        look = HandLook(sample_proportions(rng), tone, paint_atlas(rng, tone.glove), sleeve)
+        bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
+        yaw = TOKEN_YAW_DEG.get(shape, 0.0) + rng.normal(0.0, settings.yaw) + (0.0 if palm else 180.0)
+        sign = -1.0 if left else 1.0
+        rotation = (
+            rotation_z(rng.normal(0.0, settings.roll))
+            @ rotation_x(rng.normal(0.0, settings.pitch))
+            @ rotation_y(sign * yaw)
+        )
+        view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)
+        pose = token_pose(shape, rng, float(rng.uniform(*settings.looseness)))
+        hand = render_hand(pose, view, look, _draw_light(rng, water), Forearm(110.0, bare))
+        if water is None:
+            return hand
+        return replace(
+            hand, radiance=water.see_through(hand.radiance, hand.alpha, float(rng.uniform(0.4, 1.6)))
+        )
+
+    def _framed(
+        self, hand: HandImage, token: str, side: int, left: bool, palm: bool, water: Water | None
+    ) -> Crop:
+        rng = self._rng
+        low, high = hand.landmarks[:, :2].min(axis=0), hand.landmarks[:, :2].max(axis=0)
+        extent = MARGIN * float((high - low).max())
+        corner = 0.5 * (low + high) - 0.5 * extent + rng.normal(0.0, 0.02, 2) * extent
+        whole = round(extent)
+        shifted = replace(hand, origin=(hand.origin[0] - round(corner[0]), hand.origin[1] - round(corner[1])))
+        picture = self._background(whole, water)
+        shifted.paste(picture)
+        scale = side / whole
+        interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
+        picture = np.asarray(cv2.resize(picture, (side, side), interpolation=interpolation), np.float32)
+        image = _photographed(picture, rng)
+        offset = (-round(corner[0]), -round(corner[1]))
+        x, y, width, height = hand.box
+        box = (
+            round((x + offset[0]) * scale), round((y + offset[1]) * scale),
+            max(round(width * scale), 1), max(round(height * scale), 1),
+        )  # fmt: skip
+        landmarks = (hand.landmarks[:, :2] + np.array(offset)) * scale
+        return Crop(image, token, box, landmarks, left, palm)
+
+    def _background(self, size: int, water: Water | None) -> Float32:
+        """A random window of the surroundings, or now and then a plain one, (size, size, 3)."""
+        rng = self._rng
+        if rng.uniform() < 0.2:
+            plain = water.veil if water is not None else rng.uniform(0.01, 0.9) * rng.uniform(0.7, 1.0, 3)
+            return np.asarray(np.broadcast_to(plain, (size, size, 3)), np.float32).copy()
+        pool = self._rooms if water is None else self._dives
+        source = pool[int(rng.integers(len(pool)))]
+        span = int(rng.integers(60, 200))
+        x, y = int(rng.integers(0, source.shape[1] - span)), int(rng.integers(0, source.shape[0] - span))
+        window = source[y : y + span, x : x + span]
+        if rng.uniform() < 0.5:
+            window = window[:, ::-1]
+        return np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_LINEAR), np.float32)
+
+
+def _draw_light(rng: np.random.Generator, water: Water | None) -> Light:
+    """A light from above or the side, warm or cold in air, as the water leaves it below."""
+    angle = rng.uniform(-1.3, 1.3)
+    direction = (
+        float(np.sin(angle)),
+        float(-np.cos(angle)) * float(rng.uniform(0.3, 1.0)),
+        float(rng.uniform(0.15, 1.0)),
+    )
+    colour = water.light if water is not None else rng.uniform([0.7, 0.85, 0.9], [1.0, 1.0, 1.0])
+    strength = float(np.exp(rng.uniform(-1.2, 0.1)))
+    share = float(rng.uniform(0.25, 0.7))
+    key, sky, ground = (
+        colour * strength * part for part in (1.0 - share, share * 0.9, share * rng.uniform(0.3, 0.8))
+    )
+    return Light(direction, _triple(key), _triple(sky), _triple(ground), float(rng.uniform(0.2, 0.75)))
+
+
+def _triple(values: NDArray[np.floating]) -> tuple[float, float, float]:
+    return float(values[0]), float(values[1]), float(values[2])
+
+
+def _photographed(picture: Float32, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """The picture as a camera of changing quality keeps it."""
+    look = CameraLook(
+        target=float(rng.uniform(0.12, 0.4)), balance=float(rng.uniform(0.0, 0.6)), drift=0.0,
+        shot=0.0006 * float(rng.uniform(0.2, 6.0)), read=0.004 * float(rng.uniform(0.2, 4.0)),
+        blur_px=float(rng.uniform(0.0, 1.1)), jpeg=int(rng.integers(40, 96)) if rng.uniform() < 0.6 else 0,
+        motion_px=float(rng.uniform(2.0, 5.0)) if rng.uniform() < 0.1 else 0.0,
+    )  # fmt: skip
+    return Sensor(look, rng, field_size=picture.shape[0]).expose(picture, 0, 0.0)

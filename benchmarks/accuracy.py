@@ -26,15 +26,13 @@ from lightgesture.benchmarks.hands import (
     summary_table,
 )
 from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, PipelineMethod
-from lightgesture.benchmarks.regions import (
-    Progress,
-    Run,
+from lightgesture.benchmarks.region_tables import (
     instructions_table,
     negatives_table,
     regions_table,
-    run_methods,
     tokens_table,
 )
+from lightgesture.benchmarks.regions import Progress, Run, run_methods
 from lightgesture.benchmarks.scorer import Label, Reading
 from lightgesture.benchmarks.tables import Table
 from lightgesture.sources import read_picture

@@ -6,16 +6,14 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import latency
-from lightgesture.benchmarks.latency import (
+from lightgesture.benchmarks import latency, timing
+from lightgesture.benchmarks.latency import PAPER, measure, read_clips
+from lightgesture.benchmarks.timing import (
     FRAME,
-    PAPER,
     SINGLE,
     LatencySettings,
     RecordingClock,
     limited_threads,
-    measure,
-    read_clips,
     time_calls,
 )
 
@@ -57,7 +55,7 @@ def fake_pipelines(monkeypatch):
         made.append(FakePipeline(model))
         return made[-1]
 
-    monkeypatch.setattr(latency, "TimedPipeline", make)
+    monkeypatch.setattr(timing, "TimedPipeline", make)
     return made
 
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 import pytest
 
 from lightgesture.benchmarks.datasets import read_frames, read_negatives
-from lightgesture.benchmarks.regions import (
+from lightgesture.benchmarks.region_tables import (
     instructions_table,
     negatives_table,
     regions_table,
-    run_methods,
     tokens_table,
 )
+from lightgesture.benchmarks.regions import run_methods
 
 
 def show_nothing(samples, _heading):

@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+
+from lightgesture.synth.crops import MARGIN, CropMaker, CropSettings
+
+FEW = CropSettings(backdrops=2)
+
+
+@pytest.fixture(scope="module")
+def crops():
+    maker = CropMaker(1, settings=FEW)
+    return [maker.sample(token) for token in ("0", "3", "left", "right", "pic", "ok", "none")]
+
+
+def test_crops_have_the_form_of_the_real_ones(crops):
+    for crop in crops:
+        side = crop.image.shape[0]
+        assert crop.image.shape == (side, side, 3)
+        assert 40 <= side <= 112
+        extent = np.ptp(crop.landmarks, axis=0).max()
+        assert side / extent == pytest.approx(MARGIN, rel=0.06)
+        x, y, width, height = crop.box
+        assert (x + width / 2, y + height / 2) == pytest.approx((side / 2, side / 2), abs=0.25 * side)
+        assert max(width, height) >= 0.9 * extent
+
+
+@pytest.mark.parametrize("token", ["left", "right"])
+def test_left_and_right_say_where_the_thumb_points(token):
+    maker = CropMaker(2, settings=CropSettings(backdrops=1, roll=0.0, yaw=0.0))
+    sides = set()
+    for _ in range(10):
+        crop = maker.sample(token)
+        sides.add(crop.left)
+        thumb, knuckles = crop.landmarks[4, 0], crop.landmarks[[5, 9, 13, 17], 0].mean()
+        assert (thumb < knuckles) == (token == "left")
+        assert crop.palm == (crop.left == (token == "left"))
+    assert sides == {True, False}
+
+
+def test_a_stream_repeats_by_seed_and_differs_by_purpose():
+    first, again = ([crop.image for crop in CropMaker(7, settings=FEW).samples(4)] for _ in range(2))
+    assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))
+    other = next(CropMaker(7, "suite", FEW).samples(1)).image
+    assert other.shape != first[0].shape or not np.array_equal(other, first[0])
+
+
+def test_all_tokens_come_in_turn():
+    maker = CropMaker(3, settings=CropSettings(backdrops=1, none=0.0))
+    assert [crop.token for crop in maker.samples(11)] == [
+        "0",
+        "1",
+        "2",
+        "3",
+        "4",
+        "5",
+        "left",
+        "right",
+        "pic",
+        "ok",
+        "0",
+    ]

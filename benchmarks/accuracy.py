@@ -8,14 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
-from lightgesture.benchmarks.datasets import (
-    Sample,
-    group_samples,
-    read_frames,
-    read_hands,
-    read_negatives,
-    read_webcam,
-)
 from lightgesture.benchmarks.hand_bank import build_bank
 from lightgesture.benchmarks.hands import (
     HandAnswer,
@@ -33,8 +25,17 @@ from lightgesture.benchmarks.region_tables import (
     tokens_table,
 )
 from lightgesture.benchmarks.regions import Progress, Run, run_methods
-from lightgesture.benchmarks.scorer import Label, Reading
+from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.tables import Table
+from lightgesture.datasets import (
+    Label,
+    Sample,
+    group_samples,
+    read_frames,
+    read_hands,
+    read_negatives,
+    read_webcam,
+)
 from lightgesture.sources import read_picture
 
 HANDS = "hands"

@@ -7,7 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.scorer import Box, Label, Reading
+from lightgesture.benchmarks.scorer import Reading
+from lightgesture.datasets import Label
+from lightgesture.features.types import Box
 
 Image = NDArray[np.uint8]
 

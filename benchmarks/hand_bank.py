@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.datasets import read_landmarks, read_table
+from lightgesture.datasets import read_landmarks, read_table
 from lightgesture.sources import read_picture
 from lightgesture.training.cutouts import draw_hand
 

@@ -10,10 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.datasets import Sample
 from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import (
-    Label,
     Tally,
     accuracy_by,
     auroc,
@@ -25,6 +23,7 @@ from lightgesture.benchmarks.scorer import (
     worst,
 )
 from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.datasets import Label, Sample
 from lightgesture.sources import read_picture
 
 UNSIDED = "left"

@@ -17,13 +17,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from lightgesture.benchmarks.datasets import find_data, group_samples, read_frames
 from lightgesture.benchmarks.hand_bank import build_bank
 from lightgesture.benchmarks.paper_chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
 from lightgesture.console import ReaderGoneError, drop_output, print_line, say
+from lightgesture.datasets import find_data, group_samples, read_frames
 from lightgesture.decoding import SAMPLE
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError

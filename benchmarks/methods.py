@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from lightgesture.benchmarks.hand_bank import HandBank
 from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
-from lightgesture.benchmarks.scorer import Box, Reading
+from lightgesture.benchmarks.scorer import Reading
+from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, SummaryRecord

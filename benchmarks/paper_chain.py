@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.benchmarks.hand_bank import Contour, HandBank
-from lightgesture.benchmarks.scorer import Box
+from lightgesture.features.types import Box
 
 SIDES_BY_PLACE = ("right", "left")
 """The diver's side of the image-left and of the image-right hand."""

@@ -7,14 +7,9 @@ before it ("sequence"). At most two boxes a frame count.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from lightgesture.benchmarks.datasets import Sample, group_samples, is_sequence
 from lightgesture.benchmarks.methods import Decoded, Method
-from lightgesture.benchmarks.scorer import (
-    Reading,
-    Score,
-    score_frame,
-    total,
-)
+from lightgesture.benchmarks.scorer import Reading, Score, score_frame, total
+from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.sources import DEFAULT_FPS, read_picture
 
 MAX_BOXES = 2

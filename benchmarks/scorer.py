@@ -11,26 +11,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, permutations
 
-Box = tuple[int, int, int, int]
+from lightgesture.datasets import Label
+from lightgesture.features.types import Box
 
 FOUND_IOU = 0.5
 """Least IoU of a found hand: the PASCAL VOC criterion (Everingham et al., IJCV 2010)."""
 
 NOT_READ = "-"
 """Column of a confusion matrix for a hand that was not found or not given a token."""
-
-
-@dataclass(frozen=True, slots=True)
-class Label:
-    """Truth of one hand.
-
-    side: the diver's own side, None where unknown. token: one of the ten, "none" for another clear hand
-    shape, None where unknown or outside what is scored.
-    """
-
-    box: Box
-    side: str | None
-    token: str | None
 
 
 @dataclass(frozen=True, slots=True)

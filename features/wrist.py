@@ -53,4 +53,4 @@ def cut_forearm(contour: NDArray[np.int32], box: Box, settings: WristSettings) -
     mask[bottom:] = 0
     parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     largest = max(parts, key=cv2.contourArea)
-    return (largest.reshape(-1, 2) + np.array([box[0] - 1, box[1] - 1])).astype(np.int32)
+    return np.asarray(largest.reshape(-1, 2) + np.array([box[0] - 1, box[1] - 1]), np.int32)

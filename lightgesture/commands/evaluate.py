@@ -11,7 +11,7 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 
 if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
-    from lightgesture.benchmarks.datasets import Sample
+    from lightgesture.datasets import Sample
 
 TARGETS = ("hands", "regions")
 
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate, print the tables, write the contact sheets; 0 when all was done."""
     from lightgesture.benchmarks import accuracy
-    from lightgesture.benchmarks.datasets import find_data
+    from lightgesture.datasets import find_data
     from lightgesture.models import ModelError, load_classifier
     from lightgesture.opening import make_folder
 

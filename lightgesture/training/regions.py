@@ -1,6 +1,5 @@
 """The pictures from which the selector learns, read from a data folder, and its training from end to end."""
 
-import csv
 import json
 import os
 import time
@@ -11,10 +10,18 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from lightgesture.errors import InputError
+from lightgesture.datasets import (
+    Sample,
+    read_frames,
+    read_landmarks,
+    read_negatives,
+    read_table,
+    read_webcam,
+)
 from lightgesture.features.selector_file import Selector, save_selector
 from lightgesture.features.training import BoxedPicture, fit_pairs, fit_regions
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Image
+from lightgesture.sources import read_picture
 from lightgesture.training.composites import Composer, attenuate, expose
 from lightgesture.training.cutouts import Cutout, cut_out
 
@@ -27,6 +34,8 @@ class RegionTraining:
     cutouts_per_source: most hands cut out of one source, so that no person rules.
     longest_side: whole frames are reduced to this many pixels first.
     negative_sets: sets of `negatives` that are trained on; all others stay unseen for the report.
+    left_out_sources: sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures
+        would not count otherwise.
     """
 
     region_composites: int = 8000
@@ -34,28 +43,7 @@ class RegionTraining:
     cutouts_per_source: int = 8
     longest_side: int = 320
     negative_sets: tuple[str, ...] = ("funie", "rov25", "u45")
-
-
-def _rows(path: Path) -> list[dict[str, str]]:
-    try:
-        with path.open(encoding="utf-8", newline="") as stream:
-            return list(csv.DictReader(stream))
-    except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror}); name the data folder with --data"
-        ) from None
-
-
-def _picture(path: Path) -> Image:
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
-    if image is None:
-        raise InputError(f"{path}: no readable picture; the manifest beside it names it")
-    return image  # type: ignore[return-value]
-
-
-def _box(row: dict[str, str]) -> Box:
-    x, y, width, height = (round(float(row[name])) for name in ("x", "y", "w", "h"))
-    return x, y, width, height
+    left_out_sources: tuple[str, ...] = ("emre_drone",)
 
 
 def _reduce(picture: BoxedPicture, longest: int) -> BoxedPicture:
@@ -77,43 +65,37 @@ def _mirrored(picture: BoxedPicture) -> BoxedPicture:
     return BoxedPicture(np.ascontiguousarray(picture.image[:, ::-1]), boxes)
 
 
+def _boxed(sample: Sample, longest: int) -> BoxedPicture:
+    boxes = tuple(label.box for label in sample.labels)
+    return _reduce(BoxedPicture(read_picture(sample.path), boxes), longest)
+
+
 def whole_frames(data: Path, settings: RegionTraining) -> list[BoxedPicture]:
     """People in rooms with their hands boxed: `webcam/train` and the single pictures of `frames/subhi`."""
-    boxes: dict[Path, list[Box]] = {}
-    for row in _rows(data / "webcam" / "train.csv"):
-        boxes.setdefault(data / "webcam" / row["file"], []).append(_box(row))
-    for row in _rows(data / "frames" / "labels.csv"):
-        if row["file"].startswith("frames/subhi/") and not row["sequence"]:
-            boxes.setdefault(data / row["file"], []).append(_box(row))
-    return [
-        _reduce(BoxedPicture(_picture(path), tuple(own)), settings.longest_side)
-        for path, own in boxes.items()
-    ]
+    singles = [sample for sample in read_frames(data) if sample.source == "subhi" and sample.order is None]
+    return [_boxed(sample, settings.longest_side) for sample in read_webcam(data, "train") + singles]
 
 
 def negatives(data: Path, settings: RegionTraining) -> list[BoxedPicture]:
     """Underwater frames without a hand, of the sets that may be trained on."""
-    rows = _rows(data / "negatives" / "negatives.csv")
-    return [
-        _reduce(BoxedPicture(_picture(data / row["file"]), ()), settings.longest_side)
-        for row in rows
-        if row["set"] in settings.negative_sets
-    ]
+    samples = [sample for sample in read_negatives(data) if sample.source in settings.negative_sets]
+    return [_boxed(sample, settings.longest_side) for sample in samples]
 
 
 def cutouts(data: Path, settings: RegionTraining, seed: int) -> list[Cutout]:
     """Hands of `hands/train`, cut out, at most a few from each source."""
     by_source: dict[str, list[dict[str, str]]] = {}
-    for row in _rows(data / "hands" / "train.csv"):
-        by_source.setdefault(row["set"], []).append(row)
+    for row in read_table(data, "hands/train.csv"):
+        if row["set"] not in settings.left_out_sources:
+            by_source.setdefault(row["set"], []).append(row)
     rng = np.random.default_rng(seed)
     found = []
     for source in sorted(by_source):
         own = by_source[source]
         for index in rng.permutation(len(own))[: settings.cutouts_per_source]:
             row = own[index]
-            landmarks = np.array([float(v) for v in row["lm"].split(";")], np.float32).reshape(21, 2)
-            cutout = cut_out(_picture(data / "hands" / row["path"]), landmarks, row["token"], source)
+            image = read_picture(data / "hands" / row["path"])
+            cutout = cut_out(image, read_landmarks(row), row["token"], source)
             if cutout is not None:
                 found.append(cutout)
     return found
@@ -202,7 +184,8 @@ def _write_card(
             "underwater frames without a hand": len(empty),
             "sets of negatives used": list(settings.negative_sets),
         },
-        "never trained on": "frames/robochatgest, frames/drone, the sequences of frames/subhi, webcam/val, hands/val",
+        "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
+        "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
         "limits": "hands 8 to 400 pixels high in a 640 x 480 picture; skin redder than what touches it after "
         "colour balance; hands before faces and skin-coloured walls are often missed",

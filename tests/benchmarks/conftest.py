@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.datasets import DATA_FOLDER
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
+from lightgesture.datasets import DATA_FOLDER
 
 SKIN = (120, 150, 210)
 """BGR of a pale hand under neutral light: hue 10, saturation 109."""

@@ -2,7 +2,9 @@
 
 import pytest
 
-from lightgesture.benchmarks.datasets import (
+from lightgesture.benchmarks.scorer import iou
+from lightgesture.datasets import (
+    Label,
     find_data,
     group_samples,
     is_sequence,
@@ -11,7 +13,6 @@ from lightgesture.benchmarks.datasets import (
     read_negatives,
     read_webcam,
 )
-from lightgesture.benchmarks.scorer import Label, iou
 from lightgesture.errors import InputError
 
 

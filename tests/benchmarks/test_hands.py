@@ -2,7 +2,6 @@
 
 import pytest
 
-from lightgesture.benchmarks.datasets import read_frames, read_hands
 from lightgesture.benchmarks.hands import (
     by_source_table,
     by_token_table,
@@ -10,6 +9,7 @@ from lightgesture.benchmarks.hands import (
     confusion_table,
     summary_table,
 )
+from lightgesture.datasets import read_frames, read_hands
 from lightgesture.errors import InputError
 
 

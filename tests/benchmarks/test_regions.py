@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 
-from lightgesture.benchmarks.datasets import read_frames, read_negatives
 from lightgesture.benchmarks.region_tables import (
     instructions_table,
     negatives_table,
@@ -12,6 +11,7 @@ from lightgesture.benchmarks.region_tables import (
     tokens_table,
 )
 from lightgesture.benchmarks.regions import run_methods
+from lightgesture.datasets import read_frames, read_negatives
 
 
 def show_nothing(samples, _heading):

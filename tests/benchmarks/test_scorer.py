@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 
 from lightgesture.benchmarks.scorer import (
     NOT_READ,
-    Label,
     Reading,
     Score,
     Tally,
@@ -24,6 +23,7 @@ from lightgesture.benchmarks.scorer import (
     wilson_interval,
     worst,
 )
+from lightgesture.datasets import Label
 
 boxes = st.tuples(*[st.integers(-50, 50)] * 2, *[st.integers(1, 60)] * 2)
 

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.scorer import Box, Label
 from lightgesture.errors import InputError
+from lightgesture.features.types import Box
 
 DATA_FOLDER = Path("shared") / "data"
 """Where the data lie beside the checkout, or beside the current directory."""
@@ -31,6 +31,19 @@ UNSCORED = frozenset({"3b", "x"})
 
 SIDES = {"image-left": "right", "image-right": "left"}
 """A diver faces the camera: the hand at image left is the diver's right one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """Truth of one hand.
+
+    side: the diver's own side, None where unknown. token: one of the ten, "none" for another clear hand
+    shape, None where unknown or outside what is scored.
+    """
+
+    box: Box
+    side: str | None
+    token: str | None
 
 
 @dataclass(frozen=True, slots=True)

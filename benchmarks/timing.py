@@ -78,7 +78,7 @@ def limited_threads(count: int) -> Iterator[None]:
     small matrix product, so that one without the other would measure chance.
     """
     # It comes with scikit-learn.
-    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+    from threadpoolctl import threadpool_limits
 
     before = cv2.getNumThreads()
     cv2.setNumThreads(count)

@@ -17,7 +17,8 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.recognition import recognize
     from lightgesture.settings import load_settings
     from lightgesture.sources import expand_inputs
+    from lightgesture.threads import one_blas_thread
 
     settings = load_settings(args)
-    with native_messages_muted():
+    with native_messages_muted(), one_blas_thread():
         return recognize(expand_inputs(args.inputs), settings)

@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--sentence",
         action="append",
         metavar="TEXT",
-        help='what to sign, e.g. "STOP HOVER 50 GO" (with --seed)',
+        help='what to sign, e.g. "STOP HOVER 50 GO", or ~wave, ~swim (with --seed)',
     )
     parser.add_argument(
         "--place", choices=("any", "water", "room"), default="any", help="with --seed; default any"

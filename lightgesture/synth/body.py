@@ -160,7 +160,7 @@ def _add_arm(
     parts.add(SUIT, shoulder, 58, elbow, 45, BODY_BLEND_MM)
     if look.bare_arms:
         cuff = shoulder + 0.9 * (elbow - shoulder)
-        parts.add(SUIT, cuff, 50, elbow + 0.05 * (wrist - elbow), 49)
+        parts.add(SUIT, cuff, 51, elbow + 0.06 * (wrist - elbow), 53)
     near = elbow + 0.9 * (wrist - elbow)
     parts.add(lower, elbow, 45, near, 31, 8.0)
 

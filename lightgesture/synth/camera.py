@@ -17,11 +17,10 @@ from lightgesture.synth.motion import Drift
 from lightgesture.synth.raster import Float32
 
 Picture = NDArray[np.uint8]
-NOISE_FIELD = 1024
-"""Side of the stored noise field from which each frame takes another window, pixels."""
-
+NOISE_MARGIN = 192
+"""How much wider and higher than a frame the stored noise is; each frame takes another window of it, pixels."""
 CORNERS = 4096
-"""Number of different windows; noise comes round again after as many frames."""
+"""Number of windows; noise comes round again after as many frames."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +44,14 @@ class CameraLook:
 
 
 class Sensor:
-    """Turns linear pictures into 8-bit frames; the same frame number gives the same noise."""
+    """Turns linear pictures of one `size` (width, height) into 8-bit frames; a frame's number decides its noise."""
 
-    def __init__(self, look: CameraLook, rng: np.random.Generator, field_size: int = NOISE_FIELD) -> None:
+    def __init__(
+        self, look: CameraLook, size: tuple[int, int], rng: np.random.Generator, margin: int = NOISE_MARGIN
+    ) -> None:
         self.look = look
-        self._noise = rng.standard_normal((field_size, field_size, 3), np.float32)
-        self._corners = rng.integers(0, field_size, (CORNERS, 2))
+        self._noise = rng.standard_normal((size[1] + margin, size[0] + margin, 3), np.float32)
+        self._corners = rng.integers(0, margin + 1, (CORNERS, 2))
         self._drift = Drift(rng, 4, 0.15)
         self._angle = float(rng.uniform(0.0, np.pi))
         self._gain: Float32 | None = None
@@ -90,8 +91,6 @@ class Sensor:
 
     def _add_noise(self, picture: Float32, frame: int) -> None:
         rows, columns = picture.shape[:2]
-        y, x = self._corners[frame % len(self._corners)]
-        index_y, index_x = (np.arange(n) + start for n, start in ((rows, y), (columns, x)))
-        field = self._noise.take(index_y, axis=0, mode="wrap").take(index_x, axis=1, mode="wrap")
+        x, y = self._corners[frame % CORNERS]
         variance = np.float32(self.look.shot) * np.maximum(picture, 0.0) + np.float32(self.look.read**2)
-        picture += field * cv2.sqrt(variance)
+        picture += self._noise[y : y + rows, x : x + columns] * cv2.sqrt(variance)

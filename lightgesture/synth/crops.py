@@ -221,4 +221,4 @@ def _photographed(picture: Float32, rng: np.random.Generator) -> NDArray[np.uint
         blur_px=float(rng.uniform(0.0, 1.1)), jpeg=int(rng.integers(40, 96)) if rng.uniform() < 0.6 else 0,
         motion_px=float(rng.uniform(2.0, 5.0)) if rng.uniform() < 0.1 else 0.0,
     )  # fmt: skip
-    return Sensor(look, rng, field_size=picture.shape[0]).expose(picture, 0, 0.0)
+    return Sensor(look, (picture.shape[1], picture.shape[0]), rng, margin=0).expose(picture, 0, 0.0)

@@ -7,13 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lightgesture.synth.activities import ACTIVITIES
 from lightgesture.synth.diver import ArmState, DiverState
 from lightgesture.synth.poses import SIDE_THUMB_TOKENS, TOKEN_YAW_DEG, blend_poses, token_pose
 from lightgesture.synth.script import Hold, Moment, moment_at
 from lightgesture.synth.skeleton import FloatArray
-
-LOWERED_TURN = (60.0, 15.0, 150.0)
-"""Yaw, pitch and roll of a lowered hand: edge to the camera, fingers down."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,13 +20,12 @@ class Style:
 
     wrist: where the left hand is held, body frame (the right one is its mirror image). spread_mm: how far it varies
     from sign to sign. turn_deg: the same for the hand's yaw, pitch and roll, per unit of looseness. looseness: of
-    the shapes, see `poses.token_pose`. lowered: the left wrist at rest. drift_mm / drift_deg: standard deviation of
+    the shapes, see `poses.token_pose`. drift_mm / drift_deg: standard deviation of
     the body's drift. tremor_mm: of the hands. drift_hz: of both. dip_mm: how far hands sink between signs.
     approach_mm: how much nearer the diver is at the end.
     """
 
     wrist: tuple[float, float, float] = (300.0, 70.0, 220.0)
-    lowered: tuple[float, float, float] = (330.0, -400.0, 120.0)
     spread_mm: float = 18.0
     turn_deg: tuple[float, float, float] = (11.0, 10.0, 9.0)
     looseness: float = 0.8
@@ -75,11 +72,23 @@ class Performance:
         arms = []
         for hand in (0, 1):
             arm = self._between(self._keys[moment.before][hand], self._keys[moment.after][hand], moment.part)
-            arms.append(ArmState(arm.wrist + shake[3 * hand : 3 * hand + 3], arm.turn, arm.pose))
+            wrist = arm.wrist + shake[3 * hand : 3 * hand + 3] + self._sway(moment, hand, time_s)
+            arms.append(ArmState(wrist, arm.turn, arm.pose))
         distance = style.distance_mm - style.approach_mm * min(time_s / self._length_s, 1.0)
         position = np.array([0.0, style.height_mm, distance]) + drift[:3] * np.array(style.drift_mm)
         rotation = drift[3:] * np.array(style.drift_deg)
         return DiverState(position, rotation, arms[0], arms[1]), moment
+
+    def _sway(self, moment: Moment, hand: int, time_s: float) -> FloatArray:
+        """How far a busy hand is from its place; grows and fades during the passages."""
+        offset = np.zeros(3)
+        for index, share in ((moment.before, 1.0 - moment.part), (moment.after, moment.part)):
+            if self.timeline[index].pair is None:
+                activity = ACTIVITIES[self.timeline[index].activity][hand]
+                phase = 2.0 * np.pi * activity.hz * time_s
+                swing = np.array([np.sin(phase), np.cos(phase), np.cos(phase)])
+                offset += share * swing * np.array(activity.sway) * (1.0 if hand == 0 else -1.0, 1.0, 1.0)
+        return offset
 
     def _arm(self, hold: Hold, hand: int, rng: np.random.Generator) -> ArmState:
         """How one hand (0 left, 1 right) is held in a hold."""
@@ -87,8 +96,9 @@ class Performance:
         spread = rng.normal(0.0, style.spread_mm, 3)
         turn = rng.normal(0.0, style.looseness, 3) * np.array(style.turn_deg)
         if hold.pair is None:
-            pose = token_pose("relaxed", rng, style.looseness)
-            return ArmState(np.array(style.lowered) * sign + spread, turn + np.array(LOWERED_TURN), pose)
+            activity = ACTIVITIES[hold.activity][hand]
+            pose = token_pose(activity.shape, rng, style.looseness)
+            return ArmState(np.array(activity.wrist) * sign + spread, turn + np.array(activity.turn), pose)
         token = hold.pair[hand]
         pose = token_pose(token, rng, style.looseness)
         # `left` shows the palm and `right` the back of either hand: so their thumbs point in and out.

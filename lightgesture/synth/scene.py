@@ -67,7 +67,7 @@ class Scene:
             blur = float(
                 np.hypot(blur, self._water.blur_sigma(spec.diver.distance_mm / 1000.0, spec.size[0]))
             )
-        self._sensor = Sensor(_camera_look(spec, blur), streams["camera"])
+        self._sensor = Sensor(_camera_look(spec, blur), spec.size, streams["camera"])
         self._sensor.meter(self._backdrop.frame(0.0))
 
     def _build_surroundings(self, streams: dict[str, np.random.Generator]) -> None:

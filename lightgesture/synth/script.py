@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lightgesture.fsm import Grammar
+from lightgesture.synth.activities import ACTIVITIES, MARK
 
 Pair = tuple[str, str]
 """Tokens of the diver's left and right hand."""
 NUMBERED_WORD = "PARAM"
-PAUSE = "/"
-"""In a script: both hands lowered between sentences."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,17 +26,29 @@ class Timing:
     hold: tuple[int, int] = (22, 34)
     passage: tuple[int, int] = (7, 12)
     pause: tuple[int, int] = (12, 24)
+    activity: tuple[int, int] = (45, 90)
     lead: int = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """Frames `start` to `end` (exclusive) in which `pair` is shown (None: hands lowered), meaning `word`."""
+    """Frames `start` to `end` (exclusive) in which `pair` is shown, meaning `word`.
+
+    Without a pair the hands are busy with `activity` (a key of ACTIVITIES).
+    """
 
     start: int
     end: int
     pair: Pair | None
     word: str | None
+    activity: str = "rest"
+
+    def tokens(self) -> tuple[str | None, str | None]:
+        """What each hand, left and right, shows."""
+        if self.pair is not None:
+            return self.pair
+        left, right = ACTIVITIES[self.activity]
+        return left.token, right.token
 
 
 def sentence_words(text: str) -> list[str]:
@@ -74,25 +85,46 @@ def make_timeline(
 ) -> list[Hold]:
     """Holds in order, with gaps between them for the passages; hands are lowered at both ends and between sentences.
 
-    The same pair twice in a row gets a pause between, because one held sign is one word.
+    A sentence that begins with ~ is an activity. The same pair twice in a row gets a pause between, because one held
+    sign is one word. Raises ValueError for a word or activity that does not exist.
     """
-    shown: list[tuple[Pair | None, str | None]] = []
+    rest = Hold(0, 0, None, None)
+    shown: list[Hold] = []
     for sentence in sentences:
+        if sentence.startswith(MARK):
+            shown.append(_activity(sentence))
+            continue
         for pair, word in word_pairs(grammar, sentence_words(sentence)):
-            if shown and shown[-1][0] == pair:
-                shown.append((None, None))
-            shown.append((pair, word))
-        shown.append((None, None))
-    if not shown:
-        shown = [(None, None)]
-    holds, clock = [Hold(0, timing.lead, None, None)], timing.lead
-    for order, (signed, meaning) in enumerate(shown):
+            if shown and shown[-1].pair == pair:
+                shown.append(rest)
+            shown.append(Hold(0, 0, pair, word))
+        shown.append(rest)
+    if not shown or shown[-1] != rest:
+        shown.append(rest)
+    holds, clock = [replace(rest, end=timing.lead)], timing.lead
+    for order, hold in enumerate(shown):
         clock += int(rng.integers(timing.passage[0], timing.passage[1] + 1))
-        low, high = timing.hold if signed is not None else timing.pause
-        length = timing.lead if order == len(shown) - 1 else int(rng.integers(low, high + 1))
-        holds.append(Hold(clock, clock + length, signed, meaning))
+        length = timing.lead if order == len(shown) - 1 else _length(hold, timing, rng)
+        holds.append(replace(hold, start=clock, end=clock + length))
         clock += length
     return holds
+
+
+def _activity(name: str) -> Hold:
+    activity = name.removeprefix(MARK)
+    if activity not in ACTIVITIES:
+        raise ValueError(
+            f"no activity {name!r}; choose one of {', '.join(MARK + known for known in ACTIVITIES)}"
+        )
+    return Hold(0, 0, None, None, activity)
+
+
+def _length(hold: Hold, timing: Timing, rng: np.random.Generator) -> int:
+    if hold.pair is not None:
+        low, high = timing.hold
+    else:
+        low, high = timing.pause if hold.activity == "rest" else timing.activity
+    return int(rng.integers(low, high + 1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,11 +153,8 @@ SHAPE_LEFT_PART, SHAPE_REACHED_PART = 0.12, 0.9
 
 def tokens_at(timeline: Sequence[Hold], moment: Moment) -> tuple[str | None, str | None]:
     """What each hand shows (left, right); None while it is on its way or lowered."""
-    before, after = timeline[moment.before].pair, timeline[moment.after].pair
     tokens: list[str | None] = []
-    for hand in range(2):
-        old = before[hand] if before is not None else None
-        new = after[hand] if after is not None else None
+    for old, new in zip(timeline[moment.before].tokens(), timeline[moment.after].tokens(), strict=True):
         if old == new or moment.part <= SHAPE_LEFT_PART:
             tokens.append(old)
         else:

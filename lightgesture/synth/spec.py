@@ -105,8 +105,10 @@ class CameraSpec(_Part):
 
 
 class SceneSpec(_Part):
-    """A whole scene. sentences: what is signed, in the words of the language. size: width and height in pixels.
-    fps: frames a second. hold, passage, pause: frames, each drawn from its range.
+    """A whole scene.
+
+    sentences: what is signed, in the words of the language, or an activity such as "~wave". size: width and height
+    in pixels. fps: frames a second. hold, passage, pause: frames, each drawn from its range.
     """
 
     seed: Annotated[int, Field(ge=0)] = 0

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lightgesture.fsm import Instruction, Word, load_grammar
+from lightgesture.synth.activities import ACTIVITIES
 from lightgesture.synth.body import Camera
 from lightgesture.synth.diver import draw_arm_hand
 from lightgesture.synth.motion import Performance, Style
@@ -172,3 +173,28 @@ def test_scene_files(tmp_path):
         path.write_text(text)
         with pytest.raises(ValueError, match=complaint):
             load_scene_spec(path)
+
+
+@pytest.mark.parametrize("name", ACTIVITIES)
+def test_busy_hands_sign_nothing(name):
+    spec = SceneSpec(size=(96, 72), sentences=(f"~{name}",), water=WaterSpec(kind="none"))
+    scene = Scene(spec)
+    hold = scene.timeline[1]
+    assert hold.activity == name
+    frames = [scene.frame(index) for index in range(0, scene.frame_count, 8)]
+    pairs = [{hand.side: hand.token for hand in frame.record.hands} for frame in frames]
+    assert not any(pair.get("left") and pair.get("right") for pair in pairs)
+
+
+def test_an_unknown_activity_is_refused():
+    with pytest.raises(ValueError, match="no activity '~dance'; choose one of ~rest, ~wave"):
+        make_timeline(GRAMMAR, ["~dance"], Timing(), np.random.default_rng(0))
+
+
+def test_waving_moves_the_open_hand_to_and_fro():
+    timeline = make_timeline(GRAMMAR, ["~wave"], Timing(), np.random.default_rng(0))
+    performance = Performance(timeline, Style(tremor_mm=0.0), np.random.default_rng(1), 3.0)
+    wave = timeline[1]
+    across = [performance.state(f, f / 30.0)[0].right.wrist[0] for f in range(wave.start, wave.end)]
+    assert np.ptp(across) > 100.0
+    assert tokens_at(timeline, moment_at(timeline, wave.start)) == (None, "5")

@@ -84,9 +84,7 @@ def test_the_surface_mirrors_what_is_below_it():
 
 def test_noise_repeats_by_frame_number_and_grows_with_light():
     def shot(frame, level):
-        sensor = Sensor(
-            CameraLook(drift=0.0, blur_px=0.0, shot=0.003), np.random.default_rng(4), field_size=64
-        )
+        sensor = Sensor(CameraLook(drift=0.0, blur_px=0.0, shot=0.003), (40, 40), np.random.default_rng(4))
         sensor.meter(np.full((8, 8, 3), CameraLook().target, np.float32))
         return sensor.expose(np.full((40, 40, 3), level, np.float32), frame, 0.0).astype(float)
 
@@ -99,9 +97,11 @@ def test_noise_repeats_by_frame_number_and_grows_with_light():
 def test_exposure_and_white_balance_meet_their_targets():
     cast = np.full((20, 20, 3), (0.1, 0.2, 0.05), np.float32)
     sensor = Sensor(
-        CameraLook(target=0.25, balance=1.0, drift=0.0, shot=0.0, read=0.0), np.random.default_rng(0), 32
+        CameraLook(target=0.25, balance=1.0, drift=0.0, shot=0.0, read=0.0),
+        (20, 20),
+        np.random.default_rng(0),
     )
     means = sensor.expose(cast.copy(), 0, 0.0).reshape(-1, 3).mean(axis=0)
     assert means == pytest.approx([255.0 * 0.25 ** (1 / 2.2)] * 3, abs=2.0)
-    packed = Sensor(CameraLook(jpeg=30), np.random.default_rng(0), 32).expose(cast.copy(), 0, 0.0)
+    packed = Sensor(CameraLook(jpeg=30), (20, 20), np.random.default_rng(0)).expose(cast.copy(), 0, 0.0)
     assert packed.shape == (20, 20, 3)

@@ -54,7 +54,7 @@ def hog(patches: NDArray[np.uint8], settings: HogSettings | None = None) -> Floa
     count, size = patches.shape[:2]
     length = hog_length(size, settings)
     pooling = _pooling(size, settings.cell)
-    histograms = pooling @ _votes(patches, settings) @ pooling.T
+    histograms = np.asarray(pooling @ _votes(patches, settings) @ pooling.T, np.float32)
     return _normalised_blocks(histograms, settings).reshape(count, length)
 
 
@@ -63,12 +63,12 @@ def _pooling(size: int, cell: int) -> Float:
     """Share of each pixel row in each cell row, float32 (size / cell, size): linear between cell centres."""
     pixels = (np.arange(size, dtype=np.float32) + 0.5) / cell
     cells = np.arange(size // cell, dtype=np.float32) + 0.5
-    return np.maximum(0.0, 1.0 - np.abs(pixels[None, :] - cells[:, None])).astype(np.float32)
+    return np.asarray(np.maximum(0.0, 1.0 - np.abs(pixels[None, :] - cells[:, None])), np.float32)
 
 
 @lru_cache(maxsize=1)
 def _square_roots() -> Float:
-    return np.sqrt(np.arange(256, dtype=np.float32) / 255.0)
+    return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float32)
 
 
 def _gradients(patches: NDArray[np.uint8]) -> tuple[Float, Float]:
@@ -99,7 +99,7 @@ def _votes(patches: NDArray[np.uint8], settings: HogSettings) -> Float:
     np.minimum(distance, settings.bins - distance, out=distance)
     votes = np.subtract(np.float32(1.0), distance, out=distance)
     np.maximum(votes, np.float32(0.0), out=votes)
-    return np.multiply(votes, magnitude[:, None], out=votes)
+    return np.asarray(np.multiply(votes, magnitude[:, None], out=votes), np.float32)
 
 
 def _normalised_blocks(histograms: Float, settings: HogSettings) -> Float:

@@ -21,7 +21,7 @@ class PatchSettings:
     """
 
     size: int = 48
-    context: float = 1.0
+    context: float = 0.95
 
 
 def as_bgr(image: NDArray[Any]) -> Image:

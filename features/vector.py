@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.hog import HogSettings, hog, hog_length
 from lightgesture.features.patch import PatchSettings
 
@@ -13,17 +14,24 @@ Float = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class VectorSettings:
-    """patch, hog: how each part is made."""
+    """patch, hog, contour: how each part is made."""
 
     patch: PatchSettings = field(default_factory=PatchSettings)
     hog: HogSettings = field(default_factory=HogSettings)
+    contour: ContourSettings = field(default_factory=ContourSettings)
 
 
-def vector_length(settings: VectorSettings) -> int:
-    """Numbers in one vector. Raises ValueError for settings that do not go together."""
-    return hog_length(settings.patch.size, settings.hog)
+def block_lengths(settings: VectorSettings) -> tuple[int, int]:
+    """Numbers from gradients and from the contour, in the vector's order.
+
+    Raises ValueError for settings that do not go together.
+    """
+    return hog_length(settings.patch.size, settings.hog), contour_length(settings.contour)
 
 
 def feature_vectors(patches: NDArray[np.uint8], settings: VectorSettings) -> Float:
-    """Vectors of patches, float32 (n, `vector_length`)."""
-    return hog(patches, settings.hog)
+    """Vectors of patches, uint8 (n, size, size, 3), as float32 (n, sum of `block_lengths`).
+
+    First the gradients (`hog`), then the contour (`contour_numbers`; zeros where no outline was found).
+    """
+    return np.concatenate([hog(patches, settings.hog), contour_vectors(patches, settings.contour)], axis=1)

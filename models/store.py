@@ -14,9 +14,10 @@ from typing import Any, Final, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.contours import ContourSettings
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.patch import PatchSettings
-from lightgesture.features.vector import VectorSettings, vector_length
+from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.errors import ModelError
 
 Float = NDArray[np.float32]
@@ -72,7 +73,7 @@ def write_model(model: SvmModel, path: Path) -> None:
     }
     arrays = {name: getattr(model, name).astype(kind) for name, kind in ARRAYS.items()}
     content = io.BytesIO()
-    np.savez(content, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
+    np.savez_compressed(content, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
     write_file(path, content.getvalue())
 
 
@@ -97,7 +98,7 @@ def read_model(path: Path) -> SvmModel:
         raise ModelError(f"{path}: is no svm model; train one with: lightgesture train svm")
     if header.get("format") != FORMAT:
         raise ModelError(
-            f"{path}: has format {header.get('format')!r}, this version reads {FORMAT}; train it again with this version"
+            f"{path}: has format {header.get('format')!r}, this version reads {FORMAT}; train it again"
         )
     try:
         model = _build(header, arrays)
@@ -138,7 +139,9 @@ def _build(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> SvmModel:
     return SvmModel(
         classes=tuple(str(name) for name in header["classes"]),
         features=VectorSettings(
-            patch=_settings(PatchSettings, features["patch"]), hog=_settings(HogSettings, features["hog"])
+            patch=_settings(PatchSettings, features["patch"]),
+            hog=_settings(HogSettings, features["hog"]),
+            contour=_settings(ContourSettings, features["contour"]),
         ),
         gamma=_positive(header, "gamma"),
         temperature=_positive(header, "temperature"),
@@ -169,7 +172,7 @@ def _positive(header: dict[str, Any], name: str) -> float:
 def _check(path: Path, model: SvmModel) -> None:
     """Refuse arrays whose shapes do not go together or that hold NaN or infinity."""
     try:
-        length = vector_length(model.features)
+        length = sum(block_lengths(model.features))
     except ValueError as error:
         raise ModelError(f"{path}: {error}; train it again") from error
     width, count, classes = model.projection.shape[-1:], model.centres.shape[:1], (len(model.classes),)

@@ -20,16 +20,26 @@ from lightgesture.models.store import SvmModel, read_model
 Float = NDArray[np.float32]
 
 
-def radial_kernel(points: Float, centres: Float, gamma: float) -> Float:
-    """exp(-gamma |z - c|²) of every one of `points` (n, p) with every one of `centres` (m, p), float32 (n, m)."""
+def radial_kernel(points: Float, centres: Float, gamma: float, squares: Float | None = None) -> Float:
+    """exp(-gamma |z - c|²) of every one of `points` (n, p) with every one of `centres` (m, p), float32 (n, m).
+
+    squares: |c|² of the centres, (m,), which for two hands take longer than all the rest.
+    """
+    if squares is None:
+        squares = squared_lengths(centres)
     squared = points @ centres.T
     squared *= np.float32(-2.0)
-    squared += (points * points).sum(axis=1)[:, None]
-    squared += (centres * centres).sum(axis=1)
+    squared += squared_lengths(points)[:, None]
+    squared += squares
     # Rounding can leave a tiny negative distance.
     np.maximum(squared, np.float32(0.0), out=squared)
     squared *= np.float32(-gamma)
-    return np.exp(squared, out=squared)
+    return np.asarray(np.exp(squared, out=squared), np.float32)
+
+
+def squared_lengths(rows: Float) -> Float:
+    """|r|² of each row of (n, p), float32 (n,)."""
+    return np.asarray(np.einsum("ij,ij->i", rows, rows), np.float32)
 
 
 def softmax(scores: Float, temperature: float) -> Float:
@@ -44,6 +54,7 @@ class SvmClassifier:
 
     def __init__(self, model: SvmModel) -> None:
         self.model = model
+        self._squares = squared_lengths(model.centres)
 
     @property
     def classes(self) -> tuple[str, ...]:
@@ -52,13 +63,13 @@ class SvmClassifier:
 
     def project(self, vectors: Float) -> Float:
         """Feature vectors (n, d) in the kernel's space, float32 (n, p)."""
-        return (vectors - self.model.mean) @ self.model.projection
+        return np.asarray((vectors - self.model.mean) @ self.model.projection, np.float32)
 
     def scores(self, vectors: Float) -> Float:
         """Decision values of feature vectors (n, d), float32 (n, k)."""
         model = self.model
-        kernel = radial_kernel(self.project(vectors), model.centres, model.gamma)
-        return kernel @ model.weights + model.bias
+        kernel = radial_kernel(self.project(vectors), model.centres, model.gamma, self._squares)
+        return np.asarray(kernel @ model.weights + model.bias, np.float32)
 
     def probabilities(
         self, image_bgr: NDArray[np.uint8], boxes: Sequence[Box], sides: Sequence[str]

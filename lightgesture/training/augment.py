@@ -6,7 +6,7 @@ bright window, and shift its box as a selector would.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -40,14 +40,14 @@ class AugmentSettings:
     canvas: int = 96
     reach: float = 1.7
     mirror: float = 0.5
-    rotation: float = 12.0
-    stretch: float = 0.10
-    shear: float = 0.08
+    rotation: float = 14.0
+    stretch: float = 0.14
+    shear: float = 0.10
     background: float = 0.5
     finger_width: float = 0.3
     shift: float = 0.05
     scale: float = 0.08
-    light: LightSettings = LightSettings()
+    light: LightSettings = field(default_factory=LightSettings)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +76,7 @@ def augment(
     if canvas.landmarks is not None:
         mask = hand_mask(canvas.landmarks, settings.canvas, settings.finger_width)
         if len(backgrounds) and random.random() < settings.background:
-            image = _before(image, mask, backgrounds[random.integers(len(backgrounds))], random)
+            image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
     image = relight(image, mask, settings.light, random)
     return image, shifted_box(_box(canvas), settings, random), token
 

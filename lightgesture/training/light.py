@@ -23,7 +23,8 @@ class LightSettings:
 
     gamma, contrast, gain: standard deviations of the logarithm of the exponent, of the contrast and of each
         channel's gain. gradient: largest change of brightness over the picture, a share.
-    dark: share of dark copies among those not under water. darkest: brightness of the darkest, a share of the original's.
+    dark: share of dark copies among those not under water. darkest: brightness of the darkest, a share of
+        the original's.
     backlit: share of copies with a darkened hand before a brightened background, where the hand's mask is known.
     water: share of copies under water. depth: largest optical depth in red. murk: largest veil's depth.
     blur: share of blurred copies. widest_blur: standard deviation in pixels.
@@ -93,4 +94,4 @@ def _exposed(picture: Float, settings: LightSettings, random: Random) -> Float:
     slope = random.uniform(-settings.gradient, settings.gradient, 2)
     rows, columns = picture.shape[:2]
     light = 1 + slope[0] * np.linspace(-1, 1, rows)[:, None] + slope[1] * np.linspace(-1, 1, columns)
-    return np.clip(picture * light[..., None].astype(np.float32), 0.0, 1.0).astype(np.float32)
+    return np.asarray(np.clip(picture * light[..., None].astype(np.float32), 0.0, 1.0), np.float32)

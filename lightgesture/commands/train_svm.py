@@ -1,0 +1,130 @@
+"""`lightgesture train svm`: the support vector machine that reads hand patches."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument(
+        "--data",
+        required=True,
+        metavar="CSV|DIR",
+        help="manifest with the columns path and token, and if known a box (x,y,w,h or hx0..hy1), lm, set, side; "
+        "or a folder with one folder of hand pictures a class",
+    )
+    parser.add_argument(
+        "--backgrounds",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="pictures without hands: they stand behind altered copies and teach what is no token; repeatable",
+    )
+    parser.add_argument(
+        "--scenes",
+        metavar="CSV",
+        help="whole pictures with boxes (columns file,x,y,w,h, if known face_boxes and set): what lies beside "
+        "the hands teaches what is no token",
+    )
+    parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
+    parser.add_argument(
+        "--seed", type=_count, default=0, metavar="N", help="of all that is drawn (default: 0)"
+    )
+    parser.add_argument(
+        "--copies",
+        type=_count,
+        metavar="N",
+        help="altered copies of each hand (default: 4); time grows with them",
+    )
+    parser.add_argument(
+        "--centres",
+        type=_count,
+        metavar="N",
+        help="vectors of the machine (default: 5000); size grows with them",
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train, write the model and its card, and tell the scores of sources held out."""
+    from lightgesture.models import ModelError
+    from lightgesture.models.train_svm import SvmSettings
+    from lightgesture.training.stream import StreamSettings
+    from lightgesture.training.svm import SvmTraining, summary, train_to_file
+
+    out = _model_path(args.out)
+    stream, svm = StreamSettings(), SvmSettings()
+    if args.copies is not None:
+        stream = replace(stream, copies=args.copies)
+    if args.centres is not None:
+        svm = replace(svm, centres=max(args.centres, 1))
+    training = SvmTraining(
+        data=Path(args.data),
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        seed=args.seed,
+        stream=stream,
+        svm=svm,
+    )
+    try:
+        with StepBars(args.quiet) as bars:
+            card = train_to_file(training, out, bars.show)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if not args.quiet:
+        for line in summary(card, out):
+            say(line)
+    return ExitStatus.OK
+
+
+class StepBars:
+    """A progress bar for one step after the other, on stderr where that is a terminal."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet = quiet
+        self._step = ""
+        self._bar: Any = None
+
+    def __enter__(self) -> "StepBars":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._close()
+
+    def show(self, step: str, done: int, total: int) -> None:
+        """`done` of `total` of a step are done; a total of 0 is not known."""
+        if self._quiet:
+            return
+        if step != self._step:
+            from tqdm import tqdm
+
+            self._close()
+            self._bar = tqdm(desc=step, total=total or None, leave=False, disable=None)
+            self._step = step
+        self._bar.update(done - self._bar.n)
+
+    def _close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+
+def _model_path(text: str) -> Path:
+    """The file to write, refused before hours are spent rather than after."""
+    path = Path(text)
+    if path.suffix != ".npz":
+        raise UsageError(f"{text}: a model file ends in .npz; give another name with --out")
+    if not path.parent.is_dir():
+        raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
+    return path
+
+
+def _count(text: str) -> int:
+    number = int(text)
+    if number < 0:
+        raise ValueError
+    return number

@@ -1,0 +1,88 @@
+"""The card beside a model: what it was made of, how well it reads whom, and what it is not for."""
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.models import NONE
+from lightgesture.models.train_svm import HeldOut
+from lightgesture.training.samples import HandRow
+
+LIMITS = (
+    "Trained on bare hands in air; water and darkness are simulated. Gloves were never seen.",
+    "Hands seen obliquely, half closed, or with the fingers together are rarer in the data than in life.",
+    "A region that is no hand can still be read as a token: ask for several equal frames before acting.",
+    "Pictures of real people, most published without a stated licence: check before you publish a product.",
+)
+"""What a user of a model has to know, whatever it was trained on."""
+
+
+def data_section(rows: Sequence[HandRow]) -> dict[str, Any]:
+    """Counts of pictures, sources, classes and licences as far as stated."""
+    return {
+        "pictures": len(rows),
+        "sources": len({row.source for row in rows}),
+        "per_class": dict(sorted(Counter(row.token for row in rows).items())),
+        "licences": dict(Counter(row.licence for row in rows).most_common()),
+    }
+
+
+def held_out_section(held_out: HeldOut, classes: Sequence[str]) -> dict[str, Any]:
+    """Scores of originals and of altered copies by machines that saw none of their sources.
+
+    Accuracy is over tokens alone: the likeliest token, `none` left aside and nothing refused.
+    """
+    originals = _tokens(held_out, classes) & held_out.original
+    altered = _tokens(held_out, classes) & ~held_out.original
+    right = _right(held_out, classes)
+    section: dict[str, Any] = {
+        "accuracy": _mean(right[originals]),
+        "accuracy_of_altered_copies": _mean(right[altered]),
+        "per_class": {
+            name: _mean(right[originals & (held_out.truth == number)])
+            for number, name in enumerate(classes)
+            if name != NONE
+        },
+        "per_source": {
+            str(source): {
+                "accuracy": _mean(right[originals & (held_out.sources == source)]),
+                "pictures": int((originals & (held_out.sources == source)).sum()),
+            }
+            for source in np.unique(held_out.sources[originals])
+        },
+    }
+    if NONE in classes:
+        none = held_out.probabilities[:, list(classes).index(NONE)]
+        truth = held_out.truth == list(classes).index(NONE)
+        section["none_auroc"] = auroc(none[held_out.original & truth], none[originals])
+    return section
+
+
+def auroc(positives: NDArray[np.float32], negatives: NDArray[np.float32]) -> float | None:
+    """Probability that a positive's value is above a negative's, ties half; None without one of either."""
+    if not len(positives) or not len(negatives):
+        return None
+    ordered = np.sort(negatives)
+    below = np.searchsorted(ordered, positives, side="left")
+    not_above = np.searchsorted(ordered, positives, side="right")
+    return round(float((below + not_above).mean() / (2 * len(negatives))), 4)
+
+
+def _tokens(held_out: HeldOut, classes: Sequence[str]) -> NDArray[np.bool_]:
+    if NONE not in classes:
+        return np.ones(len(held_out.truth), bool)
+    return np.asarray(held_out.truth != list(classes).index(NONE))
+
+
+def _right(held_out: HeldOut, classes: Sequence[str]) -> NDArray[np.bool_]:
+    tokens = held_out.probabilities.copy()
+    if NONE in classes:
+        tokens[:, list(classes).index(NONE)] = -1.0
+    return np.asarray(tokens.argmax(axis=1) == held_out.truth)
+
+
+def _mean(right: NDArray[np.bool_]) -> float | None:
+    return round(float(right.mean()), 4) if len(right) else None

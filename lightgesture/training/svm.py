@@ -1,0 +1,122 @@
+"""From a manifest to a model file and its card: the training of the SVM from end to end."""
+
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lightgesture._version import __version__
+from lightgesture.features.vector import block_lengths
+from lightgesture.models import CLASSES
+from lightgesture.models.store import SvmModel, write_file, write_model
+from lightgesture.models.train_svm import HeldOut, Progress, SvmSettings, train_svm
+from lightgesture.training.card import LIMITS, data_section, held_out_section
+from lightgesture.training.negatives import Scene, read_backgrounds, read_scenes
+from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+from lightgesture.training.stream import StreamSettings, stream
+
+
+@dataclass(frozen=True, slots=True)
+class SvmTraining:
+    """What is trained from what.
+
+    data: manifest, or folder with a folder a class. backgrounds: folders of pictures without hands. scenes: table of
+    whole pictures with boxes of hands and faces, or None. seed: of everything drawn. stream, svm: settings.
+    """
+
+    data: Path
+    backgrounds: tuple[Path, ...] = ()
+    scenes: Path | None = None
+    seed: int = 0
+    stream: StreamSettings = field(default_factory=StreamSettings)
+    svm: SvmSettings = field(default_factory=SvmSettings)
+
+
+def train_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[str, Any]:
+    """Train, write `out` and the card beside it (suffix .json), and return the card.
+
+    Raises InputError for unreadable data and ModelError for samples or files that will not do; neither file is
+    touched before the training is done.
+    """
+    started = time.monotonic()
+    rows = read_rows(training.data)
+    hands = load_hands(rows, progress)
+    negative = training.stream.negative
+    backgrounds = [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)]
+    scenes = read_scenes(training.scenes, negative) if training.scenes else []
+    present = {row.token for row in rows}
+    model, held_out = train_svm(
+        stream(hands, backgrounds, scenes, training.stream, training.seed),
+        training.svm,
+        classes=[name for name in CLASSES if name in present],
+        seed=training.seed,
+        progress=progress,
+    )
+    card = make_card(training, rows, (backgrounds, scenes), model, held_out)
+    card["training"]["seconds"] = round(time.monotonic() - started)
+    write_model(model, out)
+    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    return card
+
+
+def load_hands(rows: Sequence[HandRow], progress: Progress) -> list[LabelledHand]:
+    """Read the pictures of all rows."""
+    hands = []
+    for number, row in enumerate(rows, 1):
+        hands.append(load_hand(row))
+        progress("read pictures", number, len(rows))
+    return hands
+
+
+def make_card(
+    training: SvmTraining,
+    rows: Sequence[HandRow],
+    others: tuple[Sequence[Scene], Sequence[Scene]],
+    model: SvmModel,
+    held_out: HeldOut,
+) -> dict[str, Any]:
+    """The card of a trained model, ready for JSON."""
+    backgrounds, scenes = others
+    gradients, contour = block_lengths(model.features)
+    return {
+        "name": "svm",
+        "version": __version__,
+        "what": "hand patch to token: gradients and contour numbers, radial least-squares SVM of fixed size",
+        "classes": list(model.classes),
+        "use": "bare hands of a diver facing the camera, in boxes of lightgesture's selector",
+        "limits": list(LIMITS),
+        "data": {
+            **data_section(rows),
+            "backgrounds": {"pictures": len(backgrounds), "sources": sorted({s.source for s in backgrounds})},
+            "scenes": {"pictures": len(scenes), "sources": len({s.source for s in scenes})},
+        },
+        "training": {
+            "seed": training.seed,
+            "samples": len(held_out.truth),
+            "originals": int(held_out.original.sum()),
+            "settings": {"stream": asdict(training.stream), "svm": asdict(training.svm)},
+        },
+        "model": {
+            "numbers_of_a_patch": {"gradients": gradients, "contour": contour},
+            "vectors": len(model.centres),
+            "gamma": model.gamma,
+            "temperature": model.temperature,
+        },
+        "held_out_sources": held_out_section(held_out, model.classes),
+    }
+
+
+def summary(card: dict[str, Any], out: Path) -> list[str]:
+    """What a user wants to know first, a line each."""
+    scores = card["held_out_sources"]
+    words = [f"{name} {value:.3f}" for name, value in scores["per_class"].items() if value is not None]
+    return [
+        f"{card['training']['samples']} samples of {card['data']['sources']} sources"
+        f" in {card['training']['seconds']} s",
+        f"sources held out: {scores['accuracy']} of the tokens right, {scores['accuracy_of_altered_copies']} of the"
+        " altered copies",
+        "per class: " + ", ".join(words),
+        f"wrote {out} ({out.stat().st_size / 1e6:.2f} MB) and {out.with_suffix('.json')}",
+    ]

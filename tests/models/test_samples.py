@@ -1,0 +1,108 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.errors import InputError
+from lightgesture.training.samples import landmark_box, load_hand, read_rows
+
+HEADER = "path,token,set,hx0,hy0,hx1,hy1,lm,side,licence\n"
+
+
+def manifest(
+    folder: Path, *rows: str, header: str = HEADER, pictures: tuple[str, ...] = ("a.png", "b.png")
+) -> Path:
+    for name in pictures:
+        assert cv2.imwrite(str(folder / name), np.full((50, 60, 3), 90, np.uint8))
+    (folder / "hands.csv").write_text(header + "\n".join(rows) + "\n", encoding="utf-8")
+    return folder / "hands.csv"
+
+
+def test_a_manifest_gives_boxes_grown_to_the_outline(tmp_path: Path) -> None:
+    landmarks = ";".join(f"{10 + index};{20 + index / 2}" for index in range(21))
+    path = manifest(
+        tmp_path,
+        f"a.png,1,anna,10,20,30,40,{landmarks},,MIT",
+        "b.png,none,,,,,,,right,",
+        pictures=("a.png", "b.png"),
+    )
+    first, second = read_rows(path)
+    assert first.box == (8, 18, 24, 24)
+    assert (first.source, first.side, first.licence) == ("anna", "left", "MIT")
+    assert first.landmarks is not None
+    assert first.landmarks.shape == (21, 2)
+    assert (second.box, second.landmarks, second.side) == (None, None, "right")
+    assert (second.source, second.licence) == (tmp_path.name, "none stated")
+    assert load_hand(second).box == (0, 0, 60, 50)
+
+
+def test_an_outline_is_taken_as_it_is(tmp_path: Path) -> None:
+    path = manifest(tmp_path, "a.png,1,5,6,20,30", "b.png,2,1,1,9,9", header="path,token,x,y,w,h\n")
+    assert [row.box for row in read_rows(path)] == [(5, 6, 20, 30), (1, 1, 9, 9)]
+
+
+def test_folders_name_the_classes(folder: Path) -> None:
+    rows = read_rows(folder)
+    assert [row.token for row in rows] == ["1"] * 12 + ["5"] * 12 + ["none"] * 12
+    assert len({row.source for row in rows}) == 1
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        (("a.png,7,,,,,,,,", "b.png,1,,,,,,,,"), "line 2: token '7' is no class"),
+        (("a.png,1,,,,,,,,", "c.png,2,,,,,,,,"), "1 of 2 pictures are missing, first .*c.png"),
+        (("a.png,1,,,,,,,,", "b.png,1,,,,,,,,"), "at least two classes"),
+        (("a.png,1,,10,20,30,x,,,", "b.png,2,,,,,,,,"), "line 2: column hx0"),
+        (("a.png,1,,30,20,10,40,,,", "b.png,2,,,,,,,,"), "line 2: the box has no area"),
+        (("a.png,1,,10,20,30,nan,,,", "b.png,2,,,,,,,,"), "finite"),
+        (("a.png,1,,,,,,1;2;3,,", "b.png,2,,,,,,,,"), "column lm needs 42"),
+        (("a.png,1,,,,,,,upper,", "b.png,2,,,,,,,,"), "side 'upper'"),
+        ((), "no class"),
+    ],
+)
+def test_wrong_rows_are_refused(tmp_path: Path, rows: tuple[str, ...], words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        read_rows(manifest(tmp_path, *rows))
+
+
+def test_other_tables_and_folders_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no column token"):
+        read_rows(manifest(tmp_path, "a.png,1", header="path,label\n"))
+    with pytest.raises(InputError, match=r"cannot be read"):
+        read_rows(tmp_path / "missing.csv")
+    with pytest.raises(InputError, match=r"cannot be read"):
+        read_rows(tmp_path / "a.png")
+    (tmp_path / "folders" / "thumb").mkdir(parents=True)
+    with pytest.raises(InputError, match="'thumb' is no class"):
+        read_rows(tmp_path / "folders")
+
+
+def test_pictures_that_are_none_and_boxes_outside_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "c.png").write_bytes(b"no picture")
+    path = manifest(tmp_path, "c.png,1,0,0,9,9", "b.png,2,70,5,9,9", header="path,token,x,y,w,h\n")
+    broken, outside = read_rows(path)
+    with pytest.raises(InputError, match=r"c\.png: is no picture"):
+        load_hand(broken)
+    with pytest.raises(InputError, match=r"b\.png: box .* outside"):
+        load_hand(outside)
+
+
+def test_what_is_kept_of_a_large_picture_holds_the_same_hand(tmp_path: Path) -> None:
+    picture = np.zeros((600, 800, 3), np.uint8)
+    picture[200:400, 300:450] = 255
+    assert cv2.imwrite(str(tmp_path / "big.png"), picture)
+    path = manifest(tmp_path, "big.png,1,300,200,150,200", "b.png,2,1,1,9,9", header="path,token,x,y,w,h\n")
+    hand = load_hand(read_rows(path)[0])
+    assert max(hand.image.shape) <= 161
+    x, y, width, height = hand.box
+    assert hand.image[y + 1 : y + height - 1, x + 1 : x + width - 1].min() == 255
+    assert hand.image[: y - 1].max() == 0
+    assert hand.image[:, : x - 1].max() == 0
+
+
+def test_the_outline_is_nine_percent_larger_on_each_side() -> None:
+    landmarks = np.zeros((21, 2), np.float32)
+    landmarks[1] = 100, 200
+    assert landmark_box(landmarks) == (-9, -18, 118, 236)

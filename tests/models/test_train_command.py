@@ -1,0 +1,98 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightgesture.cli import main
+from lightgesture.models import load_classifier
+from lightgesture.training.samples import read_picture
+
+
+def train(folder: Path, out: Path, *more: str) -> int:
+    return main(
+        ["train", "svm", "--data", str(folder), "--out", str(out), "--copies", "1", "--centres", "50", *more]
+    )
+
+
+def test_folders_become_a_model_and_its_card(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train(folder, tmp_path / "mine.npz") == 0
+    classifier = load_classifier(tmp_path / "mine.npz")
+    assert classifier.classes == ("1", "5", "none")
+    picture = read_picture(folder / "5" / "0.png")
+    probabilities = classifier.probabilities(picture, [(0, 0, 60, 60)], ["left"])
+    assert classifier.classes[int(probabilities[0].argmax())] == "5"
+    card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
+    assert card["data"]["per_class"] == {"1": 12, "5": 12, "none": 12}
+    assert card["data"]["licences"] == {"none stated": 36}
+    assert card["training"]["seed"] == 0
+    assert card["held_out_sources"]["per_class"]["1"] > 0.8
+    assert card["limits"]
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "wrote" in captured.err
+
+
+def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
+    for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
+        assert train(folder, tmp_path / f"{name}.npz", "--seed", seed, "--quiet") == 0
+    content = {name: (tmp_path / f"{name}.npz").read_bytes() for name in "abc"}
+    assert content["a"] == content["b"]
+    assert content["a"] != content["c"]
+
+
+def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> None:
+    scene = folder / "5" / "0.png"
+    (tmp_path / "scenes.csv").write_text(
+        f'file,set,x,y,w,h,face_boxes\n{scene.relative_to(tmp_path)},room,20,20,20,20,"0,0,9,9;50,50,9,9"\n',
+        encoding="utf-8",
+    )
+    more = ("--backgrounds", str(folder / "none"), "--scenes", str(tmp_path / "scenes.csv"), "--quiet")
+    assert train(folder, tmp_path / "mine.npz", *more) == 0
+    card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
+    assert card["data"]["backgrounds"] == {"pictures": 12, "sources": ["background none"]}
+    assert card["data"]["scenes"] == {"pictures": 1, "sources": 1}
+    assert card["training"]["originals"] > 36
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (["--data", "nowhere.csv"], 1, "nowhere.csv: cannot be read"),
+        (["--data", "{folder}", "--backgrounds", "nowhere"], 1, "nowhere: no such folder"),
+        (["--data", "{folder}", "--scenes", "nowhere.csv"], 1, "nowhere.csv: is no table"),
+        (["--data", "{folder}", "--out", "model.pickle"], 2, "ends in .npz"),
+        (["--data", "{folder}", "--out", "nowhere/model.npz"], 2, "nowhere: no such folder"),
+        (["--data", "{folder}", "--seed", "-1"], 2, "--seed"),
+        ([], 2, "--data"),
+    ],
+)
+def test_wrong_use_is_one_line(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str],
+    status: int,
+    words: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    before = set(tmp_path.rglob("*"))
+    assert main(["train", "svm", *(text.format(folder=folder) for text in arguments)]) == status
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1
+    assert set(tmp_path.rglob("*")) == before
+
+
+def test_an_unknown_model_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["train", "forest"]) == 2
+    assert "forest" in capsys.readouterr().err
+
+
+def test_a_picture_that_cannot_be_decoded_stops_the_training(folder: Path, tmp_path: Path) -> None:
+    (folder / "1" / "broken.png").write_bytes(np.arange(50, dtype=np.uint8).tobytes())
+    assert train(folder, tmp_path / "mine.npz") == 1
+    assert not (tmp_path / "mine.npz").exists()

@@ -1,0 +1,100 @@
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from lightgesture.models import ModelError, TrainingSample
+from lightgesture.models.svm import SvmClassifier
+from lightgesture.models.train_svm import (
+    SvmSettings,
+    assign_folds,
+    fit_temperature,
+    sample_weights,
+    train_svm,
+)
+
+NAMES = ("1", "5", "none")
+
+
+def test_drawings_of_unseen_sources_are_told_apart(
+    samples: list[TrainingSample], quick: SvmSettings, draw: Callable[[str, int], np.ndarray]
+) -> None:
+    model, held_out = train_svm(samples, quick, classes=NAMES)
+    assert (held_out.probabilities.argmax(axis=1) == held_out.truth).mean() > 0.95
+    classifier = SvmClassifier(model)
+    for column, name in enumerate(NAMES):
+        probabilities = classifier.probabilities(draw(name, 999), [(5, 5, 50, 50)], ["left"])
+        assert probabilities[0].argmax() == column
+
+
+def test_the_same_seed_gives_the_same_model(samples: list[TrainingSample], quick: SvmSettings) -> None:
+    first, again, other = (train_svm(samples, quick, classes=NAMES, seed=seed)[0] for seed in (1, 1, 2))
+    assert np.array_equal(first.weights, again.weights)
+    assert np.array_equal(first.centres, again.centres)
+    assert not np.array_equal(first.centres, other.centres)
+
+
+def test_a_held_out_answer_is_that_of_a_machine_trained_without_its_fold(
+    samples: list[TrainingSample], quick: SvmSettings
+) -> None:
+    """With all samples as centres, leaving out sums equals giving the fold's samples no weight."""
+    settings = replace(quick, centres=len(samples))
+    _, plain = train_svm(samples, settings, classes=NAMES)
+    folds = assign_folds(plain.sources, settings.folds)
+    flipped = {"1": "5", "5": "1", "none": "none"}
+    changed = [
+        replace(sample, token=flipped[sample.token]) if fold == 0 else sample
+        for sample, fold in zip(samples, folds, strict=True)
+    ]
+    _, other = train_svm(changed, settings, classes=NAMES)
+    in_fold = folds == 0
+    # The labels of the fold changed, its answers did not, but for the common temperature.
+    assert np.array_equal(
+        other.probabilities[in_fold].argmax(axis=1), plain.probabilities[in_fold].argmax(axis=1)
+    )
+    assert (other.truth[in_fold] != plain.truth[in_fold]).any()
+
+
+def test_folds_hold_whole_sources_of_like_size() -> None:
+    random = np.random.default_rng(0)
+    sources = np.array([f"s{number}" for number in random.integers(0, 40, 2000)])
+    folds = assign_folds(sources, 5)
+    for source in np.unique(sources):
+        assert len(np.unique(folds[sources == source])) == 1
+    assert np.ptp(np.bincount(folds)) < 60
+
+
+def test_a_single_source_is_dealt_out() -> None:
+    assert np.bincount(assign_folds(np.array(["one"] * 10), 5)).tolist() == [2] * 5
+
+
+def test_weights_grow_with_the_square_root_of_a_source() -> None:
+    truth = np.array([0] * 16 + [0] * 4 + [1] * 4)
+    sources = np.array(["many"] * 16 + ["few"] * 4 + ["few"] * 4)
+    weights = sample_weights(truth, sources)
+    assert weights.mean() == pytest.approx(1.0)
+    assert weights[:16].sum() == pytest.approx(2 * weights[16:20].sum(), rel=1e-5)
+    assert weights[:20].sum() == pytest.approx(np.sqrt(3) * weights[20:].sum(), rel=1e-5)
+
+
+@pytest.mark.parametrize("scale", [0.05, 1.0, 4.0])
+def test_the_temperature_undoes_a_scale(scale: float) -> None:
+    random = np.random.default_rng(0)
+    logits = random.normal(0, 1.5, (20000, 4))
+    odds = np.exp(logits)
+    cumulated = (odds / odds.sum(axis=1, keepdims=True)).cumsum(axis=1)
+    truth = (random.random((20000, 1)) > cumulated).sum(axis=1).clip(0, 3)
+    scores = (logits * scale).astype(np.float32)
+    assert fit_temperature(scores, truth) == pytest.approx(scale, rel=0.06)
+
+
+def test_wrong_samples_are_refused(samples: list[TrainingSample], quick: SvmSettings) -> None:
+    with pytest.raises(ModelError, match="no samples"):
+        train_svm([], quick)
+    with pytest.raises(ModelError, match="at least two"):
+        train_svm([sample for sample in samples if sample.token == "1"], quick)
+    with pytest.raises(ModelError, match="'7' is no class"):
+        train_svm([replace(samples[0], token="7")], quick)
+    with pytest.raises(ModelError, match="source 0: box"):
+        train_svm([replace(samples[0], box=(500, 0, 9, 9))], quick)

@@ -104,10 +104,10 @@ def available_targets(data: Path) -> list[str]:
     return [target for target in TARGETS if any((data / name).is_dir() for name in folders[target])]
 
 
-def default_methods(classifier: Classifier, model: str, data: Path) -> list[Method]:
+def default_methods(classifier: Classifier, model: str, data: Path | None) -> list[Method]:
     """The pipeline; and, where the pictures for its bank are there, the paper's chain named in both ways."""
     pipeline = PipelineMethod(model)
-    if not (data / "hands" / "train.csv").is_file():
+    if data is None or not (data / "hands" / "train.csv").is_file():
         return [pipeline]
     bank = build_bank(data)
     return [pipeline, PaperMethod(bank), PaperMethod(bank, classifier)]

@@ -1,7 +1,7 @@
 """What is compared: the pipeline and the paper's chain behind one small interface."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -35,11 +35,15 @@ class Classifier(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Decoded:
-    """What a sequence was decoded to: accepted words, texts of instructions, number of rejected sentences."""
+    """What a sequence was decoded to: accepted words, texts of instructions, number of rejected sentences.
+
+    word_times: seconds at which each word was accepted; they take no part in comparisons.
+    """
 
     words: tuple[str, ...]
     instructions: tuple[str, ...]
     rejected: int
+    word_times: tuple[float, ...] = field(default=(), compare=False)
 
 
 class Stream(Protocol):
@@ -168,8 +172,9 @@ def decoded(events: Sequence[Event]) -> Decoded:
         words=tuple(event.word for event in events if isinstance(event, Word)),
         instructions=tuple(event.text for event in events if isinstance(event, Instruction)),
         rejected=sum(isinstance(event, Rejected) for event in events),
+        word_times=tuple(event.time_s for event in events if isinstance(event, Word)),
     )
 
 
 def _readings(record: FrameRecord) -> list[Reading]:
-    return [Reading(hand.box, hand.side, hand.token) for hand in record.hands]
+    return [Reading(hand.box, hand.side, hand.token, hand.track) for hand in record.hands]

@@ -23,11 +23,12 @@ NOT_READ = "-"
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a method says of one hand: its box, the diver's own side, and a token or None."""
+    """What a method says of one hand: its box, the diver's own side, a token or None, its track where it has one."""
 
     box: Box
     side: str | None
     token: str | None
+    track: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,19 +1,21 @@
-"""`lightgesture evaluate`: score the models and the whole chain on labelled pictures."""
+"""`lightgesture evaluate`: score the models and the whole chain on labelled pictures and on the scenario suite."""
 
 import argparse
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
 if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
-    from lightgesture.datasets import Sample
+    from lightgesture.benchmarks.tables import Table
 
-TARGETS = ("hands", "regions")
+SUITE = "suite"
+TARGETS = ("hands", "regions", SUITE)
+Item = TypeVar("Item")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,8 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "target",
         nargs="?",
         choices=TARGETS,
-        help="hands: the classifier in given boxes; regions: the whole chain on whole frames "
-        "(default: all that the data folder allows)",
+        help="hands: the classifier in given boxes; regions: the whole chain on whole frames; "
+        "suite: the whole chain on signed clips that are rendered here and cached, which takes long at first "
+        "(default: hands and regions, as far as the data folder allows)",
     )
     parser.add_argument(
         "--data",
@@ -32,6 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--model", default="svm", metavar="svm|cnn|PATH", help="classifier (default: svm)")
     parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
+    parser.add_argument(
+        "--only",
+        action="append",
+        metavar="NAME",
+        help="with suite: a part (water, land, real, negative) or a clip such as water-03 (repeatable)",
+    )
+    parser.add_argument("--quick", action="store_true", help="with suite: every fifth clip")
     parser.add_argument("--out", metavar="DIR", help="write contact sheets of the failures here")
 
 
@@ -42,8 +52,12 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.models import ModelError, load_classifier
     from lightgesture.opening import make_folder
 
+    if args.target != SUITE and (args.only or args.quick):
+        raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
     if args.out:
         make_folder(args.out)
+    if args.target == SUITE:
+        return run_suite(args)
     data = find_data(args.data)
     available = accuracy.available_targets(data)
     targets = [args.target] if args.target else available
@@ -66,21 +80,65 @@ def run(args: argparse.Namespace) -> int:
     return ExitStatus.OK
 
 
+def run_suite(args: argparse.Namespace) -> int:
+    """Render or fetch the clips, decode and score them; 0 when all was done."""
+    from lightgesture.benchmarks import suite, suite_tables
+    from lightgesture.benchmarks.accuracy import default_methods
+    from lightgesture.benchmarks.suite_cache import cache_folder
+    from lightgesture.benchmarks.suite_scenarios import SUITES
+    from lightgesture.models import ModelError, load_classifier
+
+    data = suite_data(args.data)
+    takes = [take for name in SUITES for take in suite.takes_of(name, data)]
+    known = {*SUITES, *(take.scenario.name for take in takes)}
+    if unknown := [name for name in args.only or () if name not in known]:
+        raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
+    try:
+        methods = default_methods(load_classifier(args.model), args.model, data)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    chosen = suite.choose_takes(takes, args.only or (), args.quick)
+    answers = suite.run_suite(methods, chosen, cache_folder(), show_progress)
+    print_tables(suite_tables.all_tables(answers, methods[0].name), args.json)
+    if args.out:
+        for path in suite.save_tiles(answers, Path(args.out), say):
+            say(f"wrote {path}")
+    return ExitStatus.OK
+
+
+def suite_data(named: str | None) -> Path | None:
+    """The data folder, None where there is none and none was named: the suite then does without real hands."""
+    from lightgesture.datasets import find_data
+
+    try:
+        return find_data(named)
+    except InputError:
+        if named is not None:
+            raise
+        say("no data folder: the suite goes without real hands and without the rows of the paper's chain")
+        return None
+
+
 def print_report(report: "Report", as_json: bool, is_first: bool = True) -> None:
     """Print the tables of a report on stdout, as text or as one JSON object a row."""
+    print_tables(report.tables, as_json, is_first)
+
+
+def print_tables(tables: "Sequence[Table]", as_json: bool, is_first: bool = True) -> None:
+    """Print tables on stdout, as text or as one JSON object a row."""
     from lightgesture.benchmarks.tables import to_text
 
     if as_json:
-        for table in report.tables:
+        for table in tables:
             for row in table.to_dicts():
                 print_line(json.dumps(row, ensure_ascii=False))
     else:
-        print_line(("" if is_first else "\n") + to_text(report.tables))
+        print_line(("" if is_first else "\n") + to_text(tables))
 
 
-def show_progress(samples: "Iterable[Sample]", heading: str) -> "Iterable[Sample]":
-    """Pass samples on behind a progress bar on stderr; silent where stderr is no terminal."""
+def show_progress(items: "Iterable[Item]", heading: str) -> "Iterable[Item]":
+    """Pass items on behind a progress bar on stderr; silent where stderr is no terminal."""
     from tqdm import tqdm
 
-    bar: Iterable[Sample] = tqdm(samples, desc=heading, unit="picture", leave=False, disable=None)
+    bar: Iterable[Item] = tqdm(items, desc=heading, leave=False, disable=None)
     return bar

@@ -40,7 +40,7 @@ class SelectorSettings:
     alternatives: int = 3
     alternative_iou: float = 0.35
     apart_iou: float = 0.1
-    pair_score: float = 0.25
+    pair_score: float = 0.2
     single_score: float = 0.5
     alone_confidence: float = 0.8
 

@@ -79,29 +79,29 @@ def test_no_input_is_the_bundled_clip(run, make_video, monkeypatch):
     assert run("decode", "--quiet").err == []
 
 
-def _missing(make_video, tmp_path):  # noqa: ARG001 - one signature for all
+def _missing(make_video, tmp_path):
     return tmp_path / "gone.avi"
 
 
-def _zero_byte(make_video, tmp_path):  # noqa: ARG001
+def _zero_byte(make_video, tmp_path):
     path = tmp_path / "zero.mp4"
     path.touch()
     return path
 
 
-def _empty_folder(make_video, tmp_path):  # noqa: ARG001
+def _empty_folder(make_video, tmp_path):
     path = tmp_path / "no pictures"
     path.mkdir()
     return path
 
 
-def _truncated(make_video, tmp_path):  # noqa: ARG001
+def _truncated(make_video, tmp_path):
     path = make_video("cut.mp4", 20, "mp4v")
     path.write_bytes(path.read_bytes()[:2000])
     return path
 
 
-def _all_broken(make_video, tmp_path):  # noqa: ARG001
+def _all_broken(make_video, tmp_path):
     path = tmp_path / "broken"
     path.mkdir()
     (path / "1.png").write_bytes(b"no picture")

@@ -141,7 +141,8 @@ def test_one_hand_takes_the_side_of_its_half_at_lowered_confidence():
 
 
 def test_nothing_is_chosen_below_the_thresholds():
-    assert choose(_candidates([0.4, 0.3], [[0, 0.2], [0.2, 0]]), SelectorSettings()) == []
+    settings = SelectorSettings(pair_score=0.3, single_score=0.5)
+    assert choose(_candidates([0.4, 0.3], [[0, 0.2], [0.2, 0]]), settings) == []
 
 
 def test_the_mask_of_a_region_fills_its_outline():

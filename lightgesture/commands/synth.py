@@ -41,6 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", type=Path, default=Path("."), metavar="DIR", help="folder of the output; default here"
     )
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes that render; default 1")
     parser.add_argument("--quiet", action="store_true", help="no progress bar")
 
 
@@ -57,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(str(error)) from error
     for stem, scene in scenes.items():
         with Progress(stem, scene.frame_count, "frame", args.quiet) as bar:
-            path = write_scene(scene, args.out, stem, args.hold, args.pictures, bar.advance)
+            path = write_scene(scene, args.out, stem, args.hold, args.pictures, args.jobs, bar.advance)
         print_line(f"{path}: {scene.frame_count} frames of {'; '.join(scene.spec.sentences)}")
     return ExitStatus.OK
 
@@ -73,8 +74,8 @@ def _specs(args: argparse.Namespace) -> "dict[str, SceneSpec]":
         raise UsageError("nothing to render; name a SCENE.toml or give --seed N")
     if not 0.0 <= args.difficulty <= 1.0:
         raise UsageError(f"--difficulty {args.difficulty}: outside 0 to 1; choose a value between")
-    if args.hold < 1 or any(seed < 0 for seed in seeds):
-        raise UsageError("--hold must be at least 1 and --seed at least 0; give a larger number")
+    if args.hold < 1 or args.jobs < 1 or any(seed < 0 for seed in seeds):
+        raise UsageError("--hold and --jobs must be at least 1, --seed at least 0; give a larger number")
     sentences = tuple(args.sentence) if args.sentence else None
     specs = {
         f"seed_{seed}": draw_spec(seed, "demo", args.place, sentences, args.difficulty) for seed in seeds

@@ -19,6 +19,7 @@ from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
     SIDE_THUMB_TOKENS,
+    TOKEN_LEAN_DEG,
     TOKEN_YAW_DEG,
     TOKENS,
     shows_palm,
@@ -34,6 +35,8 @@ from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
 from lightgesture.synth.water import JERLOV_BGR, Water, make_water
 
 NONE = "none"
+SIDE_THUMB_PITCH = 1.7
+"""People tilt a fist with a stretched thumb more than other signs, because the forearm comes from the side."""
 MARGIN = 1.6
 """Side of a crop against the larger side of the landmark box."""
 
@@ -53,7 +56,7 @@ class CropSettings:
     none: float = 0.1
     yaw: float = 20.0
     pitch: float = 14.0
-    roll: float = 10.0
+    roll: float = 13.0
     looseness: tuple[float, float] = (0.4, 1.4)
     backdrops: int = 12
 
@@ -138,9 +141,12 @@ class CropMaker:
         bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
         yaw = TOKEN_YAW_DEG.get(shape, 0.0) + rng.normal(0.0, settings.yaw) + (0.0 if palm else 180.0)
         sign = -1.0 if left else 1.0
+        lean = TOKEN_LEAN_DEG.get(shape, 0.0) * (-1.0 if left == palm else 1.0)
         rotation = (
-            rotation_z(rng.normal(0.0, settings.roll))
-            @ rotation_x(rng.normal(0.0, settings.pitch))
+            rotation_z(rng.normal(0.0, settings.roll) - lean)
+            @ rotation_x(
+                rng.normal(0.0, settings.pitch * (SIDE_THUMB_PITCH if shape in SIDE_THUMB_TOKENS else 1.0))
+            )
             @ rotation_y(sign * yaw)
         )
         view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)

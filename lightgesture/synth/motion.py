@@ -9,7 +9,7 @@ import numpy as np
 
 from lightgesture.synth.activities import ACTIVITIES
 from lightgesture.synth.diver import ArmState, DiverState
-from lightgesture.synth.poses import SIDE_THUMB_TOKENS, TOKEN_YAW_DEG, blend_poses, token_pose
+from lightgesture.synth.poses import SIDE_THUMB_TOKENS, TOKEN_LEAN_DEG, TOKEN_YAW_DEG, blend_poses, token_pose
 from lightgesture.synth.script import Hold, Moment, moment_at
 from lightgesture.synth.skeleton import FloatArray
 
@@ -103,7 +103,8 @@ class Performance:
         pose = token_pose(token, rng, style.looseness)
         # `left` shows the palm and `right` the back of either hand: so their thumbs point in and out.
         facing = 180.0 if token == SIDE_THUMB_TOKENS[1] else TOKEN_YAW_DEG.get(token, 0.0)
-        return ArmState(np.array(style.wrist) * sign + spread, turn + np.array([facing, 0.0, 0.0]), pose)
+        lean = TOKEN_LEAN_DEG.get(token, 0.0) * (1.0 if token == SIDE_THUMB_TOKENS[0] else -1.0)
+        return ArmState(np.array(style.wrist) * sign + spread, turn + np.array([facing, 0.0, lean]), pose)
 
     def _between(self, old: ArmState, new: ArmState, part: float) -> ArmState:
         if old is new or part <= 0.0:

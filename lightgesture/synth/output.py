@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import UsageError
 from lightgesture.results.writers import open_json_lines
+from lightgesture.synth.parallel import render_frames
 from lightgesture.synth.scene import Scene
 from lightgesture.synth.truth import with_truth
 
@@ -71,16 +72,17 @@ def write_scene(
     stem: str,
     hold: int,
     pictures: bool = False,
+    jobs: int = 1,
     advance: Callable[[], None] | None = None,
 ) -> Path:
     """Write frames and truth of a scene; returns the video's (or picture folder's) path.
 
-    hold: frames a pair must be held to count in the truth. advance: called after each frame.
+    hold: frames a pair must be held to count in the truth. jobs: processes. advance: called after each frame.
     """
     path = folder / stem if pictures else folder / f"{stem}.mp4"
     sink = picture_folder(path) if pictures else video_writer(path, scene.spec.fps, scene.spec.size)
     with open_json_lines(folder / f"{stem}.jsonl") as truth, sink as put:
-        for frame, records in with_truth(scene.frames(), scene.grammar, hold, path.name):
+        for frame, records in with_truth(render_frames(scene, jobs), scene.grammar, hold, path.name):
             put(frame.image)
             for record in records:
                 truth.write(record)

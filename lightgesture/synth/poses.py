@@ -13,29 +13,33 @@ from lightgesture.synth.skeleton import FloatArray, HandPose
 
 TOKENS = ("0", "1", "2", "3", "4", "5", "left", "right", "pic", "ok")
 SIDE_THUMB_TOKENS = ("left", "right")
+FREE_THUMB = frozenset({"5", "left", "right", "pic", "shaka", "love", "relaxed", "claw"})
+"""Shapes whose thumb touches nothing and varies freely."""
 
 # Curled fingers, and extended ones with their usual spread (MCP flexion, abduction, PIP, DIP), index to little.
-CURLED = np.array([[86, 4, 102, 60], [88, 0, 104, 62], [88, -3, 104, 62], [86, -8, 102, 60]], np.float64)
-EXTENDED = np.array([[2, 10, 5, 2], [0, 2, 5, 3], [2, -7, 5, 3], [4, -16, 6, 3]], np.float64)
+# The MCP flexion is that at which photographed fists show their PIP joints; the abductions are those of spread hands.
+CURLED = np.array([[62, 2, 107, 62], [66, 0, 108, 62], [71, -3, 106, 62], [78, -8, 104, 61]], np.float64)
+EXTENDED = np.array([[2, 8, 5, 2], [0, -4, 5, 3], [2, -8, 5, 3], [4, -17, 6, 3]], np.float64)
 
-THUMB_OUT = (52.0, 6.0, 4.0, 4.0)
-THUMB_STRETCHED = (58.0, 4.0, -6.0, -14.0)
-THUMB_OVER_MIDDLE = (28.0, 41.0, 42.0, 44.0)
-THUMB_OVER_RING = (8.0, 47.0, 38.0, 46.0)
-THUMB_OVER_LITTLE = (-6.0, 49.0, 58.0, 12.0)
-THUMB_BESIDE_INDEX = (40.0, 6.0, 55.0, 18.0)
-THUMB_ACROSS_PALM = (2.0, 36.0, 62.0, 52.0)
-THUMB_ACROSS_ROOTS = (12.0, 24.0, 60.0, 30.0)
-
-TOKEN_YAW_DEG = {"ok": 28.0, "pinch": 24.0, "grip": 25.0}
+TOKEN_YAW_DEG = {"ok": 16.0, "pinch": 22.0, "grip": 25.0}
 """How far people turn a right hand about its long axis to show the shape (a left hand: the other way)."""
+TOKEN_LEAN_DEG = {"left": 13.0, "right": 13.0}
+"""How far they lean it to the thumb's side, which brings a stretched thumb level."""
+SPREAD_DEG = {"2": 10.0, "4": 6.0, "5": 8.0}
+USUAL_SPREAD_DEG = 6.0
+SPREAD_SHARE = np.array([1.0, -0.3, -0.7, -1.2])
+"""Standard deviation of the spread (index abduction), and how the fingers share in it."""
 
 
-def _shape(thumb: tuple[float, ...], *up: int) -> FloatArray:
+def _shape(
+    thumb: tuple[float, ...], *up: int, abduction: tuple[float, float, float, float] | None = None
+) -> FloatArray:
     """Angles (5, 4) with the given thumb, the fingers `up` (1 index .. 4 little) extended, the others curled."""
     angles = np.vstack([np.array(thumb), CURLED])
     for finger in up:
         angles[finger] = EXTENDED[finger - 1]
+        if abduction is not None:
+            angles[finger, 1] = abduction[finger - 1]
     return angles
 
 
@@ -44,35 +48,47 @@ def _loose(*rows: tuple[int, int, int, int]) -> FloatArray:
     return np.array(rows, np.float64)
 
 
-def _ring(thumb: tuple[float, ...], index: tuple[float, ...], spread: float) -> FloatArray:
-    """An ok ring; the other three fingers fan out by `spread` times their usual spread."""
+def _ring(thumb: tuple[float, ...], index: tuple[float, ...]) -> FloatArray:
+    """An ok ring; the other three fingers fan out."""
     angles = _shape(thumb, 2, 3, 4)
     angles[1] = index
-    angles[2:, 1] *= spread
     return angles
 
 
+THUMB_OUT = (43.0, 8.0, 4.0, 4.0)
+THUMB_STRETCHED = (49.0, 2.0, -1.0, -4.0)
+THUMB_BESIDE_INDEX = (26.0, 8.0, 22.0, 40.0)
+THUMBS_FIST = ((4.0, 40.0, 4.0, 31.0), (-6.0, 40.0, 6.0, 34.0), THUMB_BESIDE_INDEX)
+THUMBS_OVER_MIDDLE = ((27.0, 45.0, 11.0, 31.0), (25.0, 44.0, 30.0, 49.0), (7.0, 48.0, 36.0, 43.0))
+THUMBS_OVER_RING = ((25.0, 44.0, 42.0, 33.0), (9.0, 49.0, 41.0, 33.0), (-18.0, 50.0, 25.0, 39.0))
+THUMBS_OVER_LITTLE = ((8.0, 57.0, 36.0, 41.0), (-1.0, 59.0, 45.0, 36.0), (-23.0, 52.0, 36.0, 36.0))
+THUMBS_FOLDED = ((33.0, 34.0, 56.0, 23.0), (19.0, 39.0, 50.0, 52.0), (7.0, 37.0, 65.0, 47.0))
+POINTING = (-4.0, 0.0, 0.0, 0.0)
+V_SIGN = (9.0, -8.0, 0.0, 0.0)
+THREE = (12.0, -4.0, -14.0, 0.0)
+TOGETHER = (-6.0, -6.0, -6.0, -7.0)
+
 TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
-    "0": (_shape(THUMB_OVER_MIDDLE), _shape(THUMB_OVER_RING), _shape(THUMB_BESIDE_INDEX)),
-    "1": (_shape(THUMB_OVER_MIDDLE, 1), _shape(THUMB_OVER_RING, 1)),
-    "2": (_shape(THUMB_OVER_RING, 1, 2), _shape(THUMB_OVER_LITTLE, 1, 2)),
-    "3": (_shape(THUMB_OVER_LITTLE, 1, 2, 3),),
-    "4": (_shape(THUMB_ACROSS_PALM, 1, 2, 3, 4), _shape(THUMB_ACROSS_ROOTS, 1, 2, 3, 4)),
+    "0": tuple(_shape(thumb) for thumb in THUMBS_FIST),
+    "1": tuple(_shape(thumb, 1, abduction=POINTING) for thumb in THUMBS_OVER_MIDDLE),
+    "2": tuple(_shape(thumb, 1, 2, abduction=V_SIGN) for thumb in THUMBS_OVER_RING),
+    "3": tuple(_shape(thumb, 1, 2, 3, abduction=THREE) for thumb in THUMBS_OVER_LITTLE),
+    "4": tuple(_shape(thumb, 1, 2, 3, 4, abduction=TOGETHER) for thumb in THUMBS_FOLDED),
     "5": (_shape(THUMB_OUT, 1, 2, 3, 4),),
     "left": (_shape(THUMB_STRETCHED),),
     "right": (_shape(THUMB_STRETCHED),),
-    "pic": (_shape(THUMB_OUT, 1), _shape(THUMB_STRETCHED, 1)),
+    "pic": (_shape(THUMB_STRETCHED, 1, abduction=POINTING),),
     "ok": (
-        _ring((28.0, 36.0, 20.0, 30.0), (44.0, 4.0, 68.0, 32.0), 1.4),
-        _ring((22.0, 40.0, 12.0, 18.0), (52.0, 0.0, 55.0, 25.0), 1.6),
-        _ring((22.0, 40.0, 12.0, 18.0), (52.0, 0.0, 55.0, 25.0), 1.0),
+        _ring((28.0, 36.0, 20.0, 30.0), (48.0, 2.0, 68.0, 32.0)),
+        _ring((22.0, 40.0, 12.0, 18.0), (54.0, 0.0, 55.0, 25.0)),
+        _ring((18.0, 34.0, 18.0, 2.0), (48.0, -6.0, 65.0, 22.0)),
     ),
 }
 OTHER_SHAPES: dict[str, FloatArray] = {
     "shaka": _shape(THUMB_STRETCHED, 4),
-    "horns": _shape(THUMB_OVER_RING, 1, 4),
+    "horns": _shape(THUMBS_OVER_RING[0], 1, 4),
     "love": _shape(THUMB_OUT, 1, 4),
-    "little": _shape(THUMB_OVER_RING, 4),
+    "little": _shape(THUMBS_OVER_RING[0], 4),
     "middle": _shape(THUMB_BESIDE_INDEX, 2),
     "thumb_index_middle": _shape(THUMB_OUT, 1, 2),
     "thumb_index_middle_ring": _shape(THUMB_OUT, 1, 2, 3),
@@ -89,14 +105,11 @@ def token_pose(token: str, rng: np.random.Generator, looseness: float = 1.0) -> 
 
     looseness scales every deviation: 0 is the first variant exactly, 1 natural, 2 careless.
     """
-    if token in OTHER_SHAPES:
-        variants: tuple[FloatArray, ...] = (OTHER_SHAPES[token],)
-    else:
-        variants = TOKEN_SHAPES[token]
+    variants = (OTHER_SHAPES[token],) if token in OTHER_SHAPES else TOKEN_SHAPES[token]
     if looseness <= 0.0:
         return HandPose(variants[0].copy(), np.zeros(2)).clipped()
     first, second = (variants[int(rng.integers(len(variants)))] for _ in range(2))
-    angles = first + (second - first) * rng.uniform(0.0, 1.0) * (rng.uniform() < 0.5)
+    angles = first + (second - first) * rng.uniform(0.0, 1.0)
     angles = _loosened(angles, token, rng, looseness)
     wrist = rng.normal([-4.0, -2.0], [12.0, 7.0]) * looseness
     return HandPose(angles, wrist).clipped()
@@ -105,21 +118,17 @@ def token_pose(token: str, rng: np.random.Generator, looseness: float = 1.0) -> 
 def _loosened(angles: FloatArray, token: str, rng: np.random.Generator, looseness: float) -> FloatArray:
     angles = angles.copy()
     extended = angles[1:, 2] < 30.0
-    spread = np.clip(rng.normal(1.0, 0.55), 0.05, 1.9) if looseness > 0.0 else 1.0
-    angles[1:, 1] *= 1.0 + (spread - 1.0) * min(looseness, 1.0)
+    spread = rng.normal(0.0, SPREAD_DEG.get(token, USUAL_SPREAD_DEG)) * looseness
+    angles[1:, 1] += np.where(extended, spread, 0.2 * spread) * SPREAD_SHARE
     bend = np.abs(rng.normal(0.0, 7.0)) * looseness  # people rarely stretch all the way
     each = np.abs(rng.normal(0.0, 4.0, 4)) * looseness
-    angles[1:, 2] += np.where(extended, bend + each, rng.normal(-4.0, 5.0, 4) * looseness)
+    angles[1:, 2] += np.where(extended, bend + each, rng.normal(-2.0, 6.0, 4) * looseness)
     angles[1:, 3] += np.where(extended, 0.4 * (bend + each), rng.normal(0.0, 7.0, 4) * looseness)
-    angles[1:, 0] += (
-        np.where(extended, rng.normal(0.0, 6.0) + rng.normal(0.0, 3.0, 4), rng.normal(-4.0, 5.0, 4))
-        * looseness
-    )
+    fist = rng.normal(2.0, 9.0) + rng.normal(0.0, 4.0, 4)
+    angles[1:, 0] += np.where(extended, rng.normal(0.0, 6.0) + rng.normal(0.0, 3.0, 4), fist) * looseness
     angles[1:, 1] += rng.normal(0.0, 1.8, 4) * looseness
-    spread_thumb = (
-        np.array([6.0, 5.0, 5.0, 7.0]) if token not in ("ok", "0", "1", "2", "3", "4") else np.full(4, 3.0)
-    )
-    angles[0] += rng.normal(0.0, 1.0, 4) * spread_thumb * looseness
+    free_thumb = np.array([6.0, 5.0, 5.0, 7.0]) if token in FREE_THUMB else np.full(4, 3.0)
+    angles[0] += rng.normal(0.0, 1.0, 4) * free_thumb * looseness
     return angles
 
 

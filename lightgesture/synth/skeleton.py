@@ -8,9 +8,11 @@ Joints are numbered as in the 21-landmark convention: wrist, then thumb, index, 
 from base to tip.
 
 Sources: segment lengths by Buryanov & Kotiuk, "Proportions of hand segments", Int. J. Morphol. 28(3), 2010
-(means of adults, soft tissue of the tip added to the last phalanx); ranges of motion by the American Academy of
-Orthopaedic Surgeons (AAOS, "Joint motion: method of measuring and recording", 1965) with the abduction range and
-the DIP-PIP dependence of Lin, Wu & Huang, "Modeling the constraints of human hand motion", IEEE HUMO 2000.
+(means of adults, soft tissue of the tip added to the last phalanx), brought within 4 % to the proportions of
+landmarks on photographs of hands, which put the thumb's first landmark 7 mm beyond its joint; ranges of motion by
+the American Academy of Orthopaedic Surgeons (AAOS, "Joint motion: method of measuring and recording", 1965) with the
+abduction range and the DIP-PIP dependence of Lin, Wu & Huang, "Modeling the constraints of human hand motion", IEEE
+HUMO 2000.
 """
 
 from __future__ import annotations
@@ -41,12 +43,12 @@ WRIST_LIMITS_MIN = np.array([-60.0, -35.0])  # extension, ulnar deviation
 WRIST_LIMITS_MAX = np.array([70.0, 22.0])  # flexion, radial deviation
 
 # Metacarpal heads (x, y, z) of index, middle, ring, little, and the thumb's CMC joint: the metacarpals of the
-# source above, laid out on the transverse arch with a breadth of 84 mm over the heads.
-MCP_POSITIONS = np.array([[23.0, 90.0, 1.0], [2.0, 93.0, -1.0], [-17.5, 86.0, 0.5], [-34.0, 76.0, 4.0]])
-THUMB_CMC = np.array([20.0, 18.0, 6.0])
-THUMB_LENGTHS = np.array([46.2, 31.6, 25.3])  # metacarpal, proximal, distal + soft tissue
+# source above, laid out on the transverse arch with a breadth of 91 mm over the heads.
+MCP_POSITIONS = np.array([[25.0, 90.0, 1.0], [2.5, 93.0, -1.0], [-18.5, 86.5, 0.5], [-36.5, 76.0, 4.0]])
+THUMB_CMC = np.array([25.0, 22.0, 6.0])
+THUMB_LENGTHS = np.array([41.0, 31.6, 25.3])  # metacarpal, proximal, distal + soft tissue
 FINGER_LENGTHS = np.array(
-    [[39.8, 22.4, 19.7], [44.6, 26.3, 21.4], [41.4, 25.7, 21.3], [32.7, 18.1, 19.7]]
+    [[39.8, 22.4, 19.7], [43.6, 25.7, 20.9], [40.4, 25.1, 20.8], [31.3, 17.6, 18.7]]
 )  # fmt: skip
 
 # The thumb's pad looks to the little finger's side by this twist; opposition (palmar abduction and adduction)

@@ -1,8 +1,8 @@
 """The flesh of the hand: round cones laid along a posed skeleton, projected to the picture.
 
-Radii are adult means: finger breadths at the PIP and DIP joints and hand thickness after Greiner, "Hand
-anthropometry of U.S. Army personnel", Natick TR-92/011, 1991, halved; the palm's cones follow the metacarpals,
-the thenar and hypothenar eminences and the webs between the fingers.
+Radii are half of the breadths of fingers and palms in photographs of open hands with landmarks, against the distance
+from the wrist to the middle MCP joint; the palm's cones follow the metacarpals, the thenar and hypothenar
+eminences and the webs between the fingers.
 """
 
 from __future__ import annotations
@@ -20,17 +20,18 @@ HAND, FOREARM, SLEEVE = 1, 2, 3
 
 # Radii in millimetres at MCP, PIP, DIP and tip (thumb: metacarpal base, MCP, IP, tip).
 RADII = np.array(
-    [[13.5, 10.9, 9.7, 7.9], [10.3, 9.0, 7.9, 6.9], [10.5, 9.2, 8.1, 7.1], [9.9, 8.6, 7.6, 6.7], [8.8, 7.5, 6.7, 5.9]]
+    [[14.5, 12.2, 11.2, 9.2], [11.8, 10.9, 9.3, 7.9], [12.0, 10.7, 9.4, 8.1], [11.4, 10.2, 9.1, 7.7],
+     [10.5, 9.2, 8.1, 6.9]]
 )  # fmt: skip
 PALM_BLEND_MM, BASE_BLEND_MM, FINGER_BLEND_MM = 9.0, 5.0, 1.3
 # Carpal and distal ends of the slab of the palm: the four metacarpals and, between them, the flesh that fills it.
 CARPALS = np.array(
-    [[13.5, 12.0, 0.0], [9.0, 10.0, 0.5], [4.5, 8.0, 0.0], [0.0, 8.0, 0.5],
-     [-4.5, 8.0, 0.0], [-9.0, 10.0, 0.5], [-13.5, 12.0, 0.0]]
+    [[15.0, 12.0, 0.0], [10.0, 10.0, 0.5], [5.0, 8.0, 0.0], [0.0, 8.0, 0.5],
+     [-5.0, 8.0, 0.0], [-10.0, 10.0, 0.5], [-15.0, 12.0, 0.0]]
 )  # fmt: skip
-CARPAL_RADII = (13.5, 14.0, 14.5, 14.5, 14.5, 14.0, 13.5)
-HEAD_RADII = (11.6, 11.0, 11.8, 10.8, 11.0, 10.0, 10.0)
-MEAN_PALM = np.array([84.0, 93.0])  # breadth and length that the constants above belong to
+CARPAL_RADII = (14.5, 14.5, 15.0, 15.0, 15.0, 14.5, 14.5)
+HEAD_RADII = (12.5, 11.8, 12.5, 11.6, 12.0, 11.0, 11.2)
+MEAN_PALM = np.array([91.0, 93.0])  # breadth and length that the constants above belong to
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +139,7 @@ def _add_forearm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions, fo
 
 def _add_palm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions) -> None:
     thick, points = proportions.thickness, skeleton.points
-    breadth, length = proportions.mcp[0, 0] - proportions.mcp[3, 0] + 27.0 * thick, proportions.mcp[1, 1]
+    breadth, length = proportions.mcp[0, 0] - proportions.mcp[3, 0] + 30.0 * thick, proportions.mcp[1, 1]
     size = np.array([breadth / MEAN_PALM[0], length / MEAN_PALM[1], thick])
 
     def cone(a: FloatArray, ra: float, b: FloatArray, rb: float) -> None:
@@ -150,11 +151,11 @@ def _add_palm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions) -> No
     for carpal, radius, head, head_radius in zip(CARPALS, CARPAL_RADII, heads, HEAD_RADII, strict=True):
         cone(carpal * size, radius, head, head_radius)
     cone(heads[0] + [-2.0, -8.0, 3.5], 9.5, heads[-1] + [2.0, -5.0, 2.5], 8.5)  # pads below the fingers
-    cone(np.array([-17.0, 20.0, 5.5]) * size, 13.0, np.array([-30.0, 60.0, 5.0]) * size, 10.5)  # hypothenar
+    cone(np.array([-19.0, 22.0, 5.5]) * size, 14.5, np.array([-33.0, 60.0, 5.0]) * size, 12.0)  # hypothenar
     base, mcp, metacarpal = points[1], points[2], skeleton.frames[1]
     pad, ulnar = metacarpal[:, 2], np.array([-1.0, 0.0, 0.0])
-    cone(base, 14.0, mcp, RADII[0, 1])
-    cone(np.array([7.0, 22.0, 8.0]) * size, 13.0, base + 0.78 * (mcp - base) + 3.0 * pad, 9.5)  # thenar
+    cone(base, 15.0, mcp, RADII[0, 1])
+    cone(np.array([9.0, 24.0, 8.0]) * size, 14.0, base + 0.78 * (mcp - base) + 3.0 * pad, 9.5)  # thenar
     index = points[5]
     for part, height, radius in ((0.72, 0.68, 8.0), (0.95, 0.8, 6.0)):  # first web
         start = base + part * (mcp - base) + 2.0 * ulnar

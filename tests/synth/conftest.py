@@ -10,7 +10,7 @@ SMALL = SceneSpec(
     sentences=("STOP LEFT 5 GO",),
     size=(192, 144),
     hold=(16, 16),
-    passage=(6, 6),
+    passage=(3, 3),
     diver=DiverSpec(looseness=0.2),
 )
 

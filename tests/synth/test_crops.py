@@ -3,7 +3,7 @@ import pytest
 
 from lightgesture.synth.crops import MARGIN, CropMaker, CropSettings
 
-FEW = CropSettings(backdrops=2)
+FEW = CropSettings(backdrops=1)
 
 
 @pytest.fixture(scope="module")

@@ -41,7 +41,8 @@ class ShadingSettings:
     """Constants of the skin's response; lengths in millimetres.
 
     wrap_bgr: how far diffuse light wraps beyond the terminator. smooth_mm: flesh smoothing of palm and forearm.
-    occlusion_mm / occlusion_per_mm: radius of the depth blur and darkening per millimetre below it.
+    occlusion_mm / occlusion_per_mm: radius of the depth blur and darkening per millimetre below it, up to
+    occlusion_reach_mm (what lies far behind is lit from the side again).
     shadow_steps, shadow_step_mm: reach of cast shadows. shininess: exponent of the
     highlight. gloss_*: its strength per unit of a tone's gloss (sleeve: absolute).
     """
@@ -49,8 +50,9 @@ class ShadingSettings:
     wrap_bgr: tuple[float, float, float] = (0.12, 0.2, 0.45)
     smooth_mm: float = 3.2
     occlusion_mm: tuple[float, float] = (3.5, 11.0)
-    occlusion_per_mm: tuple[float, float] = (0.13, 0.03)
-    occlusion_bgr: tuple[float, float, float] = (1.15, 1.1, 0.85)
+    occlusion_per_mm: tuple[float, float] = (0.12, 0.03)
+    occlusion_reach_mm: tuple[float, float] = (3.2, 9.0)
+    occlusion_bgr: tuple[float, float, float] = (1.08, 1.05, 0.92)
     shadow_steps: int = 5
     shadow_step_mm: float = 5.0
     shininess: int = 22
@@ -87,12 +89,14 @@ def occlusion(height: Float32, mask: Mask, px_per_mm: float, settings: ShadingSe
     weight = mask.astype(np.float32)
     depth = np.where(mask, height, np.float32(0.0))
     dark = np.zeros_like(height)
-    for radius, strength in zip(settings.occlusion_mm, settings.occlusion_per_mm, strict=True):
+    scales = zip(settings.occlusion_mm, settings.occlusion_per_mm, settings.occlusion_reach_mm, strict=True)
+    for radius, strength, reach in scales:
         size = (2 * int(radius * px_per_mm) + 1,) * 2
         mean = cv2.blur(cv2.blur(depth, size), size) / np.maximum(
             cv2.blur(cv2.blur(weight, size), size), 1e-3
         )
-        dark += np.float32(strength / px_per_mm) * np.maximum(mean - height, 0.0)
+        below = np.clip(mean - height, 0.0, np.float32(reach * px_per_mm))
+        dark += np.float32(strength / px_per_mm) * below
     return np.asarray(np.clip(dark, 0.0, 0.85) * weight, np.float32)
 
 

@@ -121,19 +121,19 @@ def hand_cones(
 
 def _add_forearm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions, forearm: Forearm) -> None:
     thick = proportions.thickness
-    for side in (-1.0, 1.0):
-        near = skeleton.forearm @ np.array([side * 9.5 * thick, 2.0, -0.5])
-        far = skeleton.forearm @ np.array([side * 14.0 * thick, -forearm.length_mm, -1.0])
-        swell = 15.5 + 0.045 * forearm.length_mm
-        flesh.add(near, 15.5 * thick, far, swell * thick, PALM_BLEND_MM, (FOREARM, FOREARM_SEGMENT))
+    for side in (-1.0, 0.0, 1.0):
+        near = skeleton.forearm @ np.array([side * 12.0 * thick, 2.0, -0.5])
+        far = skeleton.forearm @ np.array([side * 16.0 * thick, -forearm.length_mm, -1.0])
+        swell = 16.5 + 0.045 * forearm.length_mm
+        flesh.add(near, 16.5 * thick, far, swell * thick, PALM_BLEND_MM, (FOREARM, FOREARM_SEGMENT))
     if forearm.sleeve_mm is None or forearm.sleeve_mm >= forearm.length_mm:
         return
     for start, wider, end in ((0.0, 1.4, 9.0), (4.0, 0.0, forearm.length_mm)):
-        for side in (-1.0, 1.0):
+        for side in (-1.0, 0.0, 1.0):
             begin, stop = forearm.sleeve_mm + start, min(forearm.sleeve_mm + end, forearm.length_mm + 20.0)
-            near = skeleton.forearm @ np.array([side * (8.5 + 0.037 * begin) * thick, -begin, -1.0])
-            far = skeleton.forearm @ np.array([side * (8.5 + 0.037 * stop) * thick, -stop, -1.0])
-            ra, rb = ((15.5 + 0.045 * at) * thick + forearm.sleeve_gap + wider for at in (begin, stop))
+            near = skeleton.forearm @ np.array([side * (12.0 + 0.03 * begin) * thick, -begin, -1.0])
+            far = skeleton.forearm @ np.array([side * (12.0 + 0.03 * stop) * thick, -stop, -1.0])
+            ra, rb = ((16.5 + 0.045 * at) * thick + forearm.sleeve_gap + wider for at in (begin, stop))
             flesh.add(near, ra, far, rb, FINGER_BLEND_MM, (SLEEVE, FOREARM_SEGMENT))
 
 
@@ -168,7 +168,9 @@ def _add_webs(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions) -> No
         base = 0.5 * (skeleton.points[first] + skeleton.points[second])
         reach = 0.5 * (skeleton.points[first + 1] + skeleton.points[second + 1]) - base
         radius = proportions.thickness * RADII[finger + 1, 0]
-        flesh.add(base, 0.9 * radius, base + 0.4 * reach, 0.5 * radius, BASE_BLEND_MM, (HAND, PALM_SEGMENT))
+        flesh.add(
+            base, 0.85 * radius, base + 0.27 * reach, 0.55 * radius, PALM_BLEND_MM, (HAND, PALM_SEGMENT)
+        )
 
 
 def _add_finger(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions, finger: int) -> None:

@@ -31,6 +31,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="whole pictures with boxes (columns file,x,y,w,h, if known face_boxes and set): what lies beside "
         "the hands teaches what is no token",
     )
+    parser.add_argument(
+        "--without",
+        action="append",
+        default=[],
+        metavar="SOURCE",
+        help="source of the manifest (column set) that is left out; repeatable",
+    )
+    parser.add_argument(
+        "--synthetic",
+        type=_count,
+        default=0,
+        metavar="N",
+        help="rendered hands beside the real ones (default: 0)",
+    )
     parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
     parser.add_argument(
         "--seed", type=_count, default=0, metavar="N", help="of all that is drawn (default: 0)"
@@ -67,6 +81,8 @@ def run(args: argparse.Namespace) -> int:
         data=Path(args.data),
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
+        without=tuple(args.without),
+        synthetic=args.synthetic,
         seed=args.seed,
         stream=stream,
         svm=svm,

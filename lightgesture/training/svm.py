@@ -4,6 +4,7 @@ import json
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from lightgesture.training.card import LIMITS, data_section, held_out_section
 from lightgesture.training.negatives import Scene, read_backgrounds, read_scenes
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.stream import StreamSettings, stream
+from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +25,19 @@ class SvmTraining:
     """What is trained from what.
 
     data: manifest, or folder with a folder a class. backgrounds: folders of pictures without hands. scenes: table of
-    whole pictures with boxes of hands and faces, or None. seed: of everything drawn. stream, svm: settings.
+    whole pictures with boxes of hands and faces, or None. without: sources of `data` that are left out.
+    synthetic: number of rendered hands beside the real ones. seed: of everything drawn. The rest: settings.
     """
 
     data: Path
     backgrounds: tuple[Path, ...] = ()
     scenes: Path | None = None
+    without: tuple[str, ...] = ()
+    synthetic: int = 0
     seed: int = 0
     stream: StreamSettings = field(default_factory=StreamSettings)
     svm: SvmSettings = field(default_factory=SvmSettings)
+    rendered: SyntheticSettings = field(default_factory=SyntheticSettings)
 
 
 def train_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[str, Any]:
@@ -41,14 +47,16 @@ def train_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[
     touched before the training is done.
     """
     started = time.monotonic()
-    rows = read_rows(training.data)
+    rows = [row for row in read_rows(training.data) if row.source not in training.without]
     hands = load_hands(rows, progress)
     negative = training.stream.negative
     backgrounds = [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)]
     scenes = read_scenes(training.scenes, negative) if training.scenes else []
     present = {row.token for row in rows}
+    rendered = synthetic_hands(training.synthetic, training.seed, training.rendered, training.stream.augment)
+    samples = chain(stream(hands, backgrounds, scenes, training.stream, training.seed), rendered)
     model, held_out = train_svm(
-        stream(hands, backgrounds, scenes, training.stream, training.seed),
+        samples,
         training.svm,
         classes=[name for name in CLASSES if name in present],
         seed=training.seed,
@@ -91,12 +99,18 @@ def make_card(
             **data_section(rows),
             "backgrounds": {"pictures": len(backgrounds), "sources": sorted({s.source for s in backgrounds})},
             "scenes": {"pictures": len(scenes), "sources": len({s.source for s in scenes})},
+            "left_out": list(training.without),
+            "rendered_hands": training.synthetic,
         },
         "training": {
             "seed": training.seed,
             "samples": len(held_out.truth),
             "originals": int(held_out.original.sum()),
-            "settings": {"stream": asdict(training.stream), "svm": asdict(training.svm)},
+            "settings": {
+                "stream": asdict(training.stream),
+                "svm": asdict(training.svm),
+                "rendered": asdict(training.rendered),
+            },
         },
         "model": {
             "numbers_of_a_patch": {"gradients": gradients, "contour": contour},

@@ -1,3 +1,4 @@
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -98,3 +99,12 @@ def test_boxes_and_sides_must_pair_up() -> None:
     with pytest.raises(ValueError, match="2 boxes but 1"):
         cut_patches(gradient_picture(), [(0, 0, 9, 9), (9, 9, 9, 9)], ["left"])
     assert cut_patches(gradient_picture(), [], [], SMALL).shape == (0, 24, 24, 3)
+
+
+def test_a_large_hand_gives_nearly_what_averaging_all_its_pixels_gives() -> None:
+    random = np.random.default_rng(0)
+    coarse = random.integers(0, 256, (12, 12, 3)).astype(np.uint8)
+    picture = np.asarray(cv2.resize(coarse, (600, 600), interpolation=cv2.INTER_CUBIC), np.uint8)
+    averaged = cv2.resize(picture[50:450, 100:500], (24, 24), interpolation=cv2.INTER_AREA)
+    patch = cut_patch(picture, (100, 50, 400, 400), "left", SMALL)
+    assert np.abs(patch.astype(int) - averaged).mean() < 2

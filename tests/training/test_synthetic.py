@@ -1,0 +1,34 @@
+"""Rendered hands as training samples: all tokens, never originals, the same for the same seed."""
+
+import numpy as np
+
+from lightgesture.training.augment import AugmentSettings
+from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
+
+
+def _samples(seed, count=12):
+    return list(synthetic_hands(count, seed, SyntheticSettings(sources=5), AugmentSettings()))
+
+
+def test_rendered_hands_hold_all_tokens_and_are_never_originals():
+    samples = _samples(3, 40)
+    assert {sample.token for sample in samples} >= {"0", "5", "left", "right", "pic", "ok"}
+    assert not any(sample.original for sample in samples)
+    assert len({sample.source for sample in samples}) == 5
+    for sample in samples:
+        x, y, width, height = sample.box
+        rows, columns = sample.image.shape[:2]
+        assert x < columns
+        assert y < rows
+        assert x + width > 0
+        assert y + height > 0
+
+
+def test_the_same_seed_renders_the_same_pixels():
+    for first, second in zip(_samples(8), _samples(8), strict=True):
+        np.testing.assert_array_equal(first.image, second.image)
+        assert (first.box, first.token) == (second.box, second.token)
+
+
+def test_none_asked_for_is_none_given():
+    assert _samples(1, 0) == []

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
+from lightgesture.synth.body import BodyLook, Camera, render_body
 from lightgesture.synth.camera import CameraLook, Sensor
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
@@ -43,22 +44,25 @@ MARGIN = 1.6
 
 @dataclass(frozen=True, slots=True)
 class CropSettings:
-    """How samples vary. size: range of the crop's side in pixels. palm: share of palms among tokens other than
-    left/right. glove, water, none: shares of gloved hands, of hands seen through water and of shapes that are no
-    token. yaw, pitch, roll: standard deviations in degrees. looseness: range, see `poses.token_pose`. backdrops:
-    number of surroundings of each kind, drawn once.
+    """How samples vary.
+
+    size: range of the crop's side in pixels. palm: share of palms among tokens other than left/right. glove, water,
+    none: shares of gloved hands, of hands seen through water and of shapes that are no token. person: share of rooms
+    with somebody in them. yaw, pitch, roll: standard deviations in degrees. looseness: range, see
+    `poses.token_pose`. backdrops: number of surroundings of each kind, drawn once.
     """
 
     size: tuple[int, int] = (40, 112)
     palm: float = 0.75
     glove: float = 0.03
-    water: float = 0.4
+    water: float = 0.3
     none: float = 0.1
+    person: float = 0.6
     yaw: float = 20.0
     pitch: float = 14.0
     roll: float = 13.0
     looseness: tuple[float, float] = (0.4, 1.4)
-    backdrops: int = 12
+    backdrops: int = 16
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,13 +117,35 @@ class CropMaker:
                 window=float(rng.uniform(0.8, 2.5)) if rng.uniform() < 0.3 else 0.0,
                 level=float(rng.uniform(0.3, 1.2)), blur=float(rng.uniform(0.0, 0.02)),
             )  # fmt: skip
-            rooms.append(Room(look, size, rng).frame(0.0))
+            room = Room(look, size, rng)
+            picture = room.frame(0.0)
+            if rng.uniform() < self.settings.person:
+                self._draw_person(picture, room.light(rng))
+            rooms.append(picture)
             floor = str(rng.choice(("sand", "tiles", "rocks")))
             surface = float(rng.uniform(0.3, 0.9)) if rng.uniform() < 0.5 else 0.0
             dive = BackdropLook(floor, float(rng.uniform(0.5, 3.0)), surface, float(rng.uniform(0.2, 0.7)))
             water = make_water(str(rng.choice(list(JERLOV_BGR)[:7])), 2.0, float(rng.uniform(0.05, 0.6)))
             dives.append(Backdrop(dive, water, 280.0, size, rng).frame(float(rng.uniform(0.0, 9.0))))
         return rooms, dives
+
+    def _draw_person(self, picture: Float32, light: Light) -> None:
+        """Somebody behind the hand, as in most pictures from webcams: face, hair and a shirt."""
+        rng = self._rng
+        blue, green, red = _triple(skin_tone(float(rng.uniform(1.0, 9.5))).back)
+        look = BodyLook(
+            suit_bgr=_triple(rng.uniform(0.01, 0.7, 3)), accent_bgr=_triple(rng.uniform(0.01, 0.7, 3)),
+            skin_bgr=(blue, green, red), hood_bgr=_triple(rng.uniform(0.005, 0.12) * np.array([0.5, 0.7, 1.0])),
+            hood=False, mask=False, regulator=False, legs=False,
+        )  # fmt: skip
+        size = (picture.shape[1], picture.shape[0])
+        camera = Camera(float(size[0]), (0.5 * size[0], 0.5 * size[1]))
+        place = np.array([rng.normal(0.0, 200.0), rng.normal(-120.0, 80.0), rng.uniform(500.0, 1100.0)])
+        wrists = (np.array([260.0, -400.0, 60.0]), np.array([-260.0, -400.0, 60.0]))
+        turn = rotation_y(rng.normal(0.0, 20.0)) @ rotation_z(rng.normal(0.0, 6.0))
+        radiance, cover = render_body(look, turn, place, wrists, camera, size, light)
+        picture *= 1.0 - cover[..., None]
+        picture += radiance
 
     def _draw_water(self) -> Water | None:
         rng = self._rng

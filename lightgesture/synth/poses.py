@@ -25,7 +25,7 @@ TOKEN_YAW_DEG = {"ok": 16.0, "pinch": 22.0, "grip": 25.0}
 """How far people turn a right hand about its long axis to show the shape (a left hand: the other way)."""
 TOKEN_LEAN_DEG = {"left": 13.0, "right": 13.0}
 """How far they lean it to the thumb's side, which brings a stretched thumb level."""
-SPREAD_DEG = {"2": 10.0, "4": 6.0, "5": 8.0}
+SPREAD_DEG = {"2": 10.0, "4": 6.0, "5": 9.0, "ok": 12.0}
 USUAL_SPREAD_DEG = 6.0
 SPREAD_SHARE = np.array([1.0, -0.3, -0.7, -1.2])
 """Standard deviation of the spread (index abduction), and how the fingers share in it."""
@@ -48,10 +48,11 @@ def _loose(*rows: tuple[int, int, int, int]) -> FloatArray:
     return np.array(rows, np.float64)
 
 
-def _ring(thumb: tuple[float, ...], index: tuple[float, ...]) -> FloatArray:
-    """An ok ring; the other three fingers fan out."""
+def _ring(thumb: tuple[float, ...], index: tuple[float, ...], fan: float = 1.0) -> FloatArray:
+    """An ok ring; the other three fingers fan out by `fan` times their usual spread (0: side by side)."""
     angles = _shape(thumb, 2, 3, 4)
     angles[1] = index
+    angles[2:, 1] *= fan
     return angles
 
 
@@ -81,7 +82,8 @@ TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
     "ok": (
         _ring((28.0, 36.0, 20.0, 30.0), (48.0, 2.0, 68.0, 32.0)),
         _ring((22.0, 40.0, 12.0, 18.0), (54.0, 0.0, 55.0, 25.0)),
-        _ring((18.0, 34.0, 18.0, 2.0), (48.0, -6.0, 65.0, 22.0)),
+        _ring((18.0, 34.0, 18.0, 2.0), (48.0, -6.0, 65.0, 22.0), fan=0.4),
+        _ring((16.0, 40.0, 24.0, 24.0), (60.0, -2.0, 60.0, 26.0), fan=0.2),
     ),
 }
 OTHER_SHAPES: dict[str, FloatArray] = {

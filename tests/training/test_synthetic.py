@@ -2,12 +2,13 @@
 
 import numpy as np
 
+from lightgesture.synth.crops import CropSettings
 from lightgesture.training.augment import AugmentSettings
 from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
 
 
 def _samples(seed, count=12):
-    return list(synthetic_hands(count, seed, SyntheticSettings(sources=5), AugmentSettings()))
+    return list(synthetic_hands(count, seed, SyntheticSettings(crops=CropSettings(backdrops=1), sources=5), AugmentSettings()))
 
 
 def test_rendered_hands_hold_all_tokens_and_are_never_originals():

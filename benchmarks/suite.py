@@ -13,6 +13,7 @@ from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.regions import MAX_BOXES
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.suite_cache import CacheSettings, Clip, Take, fetch_clip, source_digest
+from lightgesture.benchmarks.suite_real import real_takes
 from lightgesture.benchmarks.suite_scenarios import (
     FPS,
     NEGATIVE,
@@ -73,7 +74,9 @@ class ClipAnswer:
 
 def takes_of(suite: str, data: Path | None) -> list[Take]:
     """The clips of one of SUITES; none of real hands without a data folder that holds them."""
-    return [] if suite == REAL else synthetic_takes(suite)
+    if suite != REAL:
+        return synthetic_takes(suite)
+    return [] if data is None else real_takes(data)
 
 
 def synthetic_takes(suite: str) -> list[Take]:

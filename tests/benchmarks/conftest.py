@@ -1,6 +1,7 @@
 """A small data folder drawn on the spot, and the real one where it is there."""
 
 import csv
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import cv2
@@ -9,7 +10,10 @@ import pytest
 
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
+from lightgesture.benchmarks.suite_scenarios import Scenario
 from lightgesture.datasets import DATA_FOLDER
+from lightgesture.records import FrameRecord, Hand
+from lightgesture.synth.scene import SceneFrame
 
 SKIN = (120, 150, 210)
 """BGR of a pale hand under neutral light: hue 10, saturation 109."""
@@ -162,3 +166,34 @@ def fake_method():
 @pytest.fixture
 def fake_classifier():
     return FakeClassifier()
+
+
+@dataclass(frozen=True)
+class SignedTake:
+    """A small clip of STOP UP GO: sixteen frames a sign, four without hands after each. Counts its renderings."""
+
+    scenario: Scenario
+    recipe: str = "drawn"
+    rendered: list[int] = field(default_factory=lambda: [0], compare=False)
+    fps = 30.0
+    size = (64, 48)
+    count = 60
+
+    def frames(self):
+        self.rendered[0] += 1
+        image = np.random.default_rng(0).integers(0, 255, (48, 64, 3), np.uint8)
+        for index in range(self.count):
+            pair = (("ok", "0"), ("right", "right"), ("ok", "ok"))[index // 20]
+            hands = tuple(
+                Hand(side=side, token=token, confidence=1.0, box=box, track=None, reason=None)
+                for side, token, box in zip(
+                    ("left", "right"), pair, ((40, 10, 12, 12), (8, 10, 12, 12)), strict=True
+                )
+            )
+            shown = hands if index % 20 < 16 else ()
+            yield SceneFrame(image, FrameRecord(source=None, frame=index, time_s=index / 30.0, hands=shown))
+
+
+@pytest.fixture
+def signed_take():
+    return SignedTake(Scenario("water", ("STOP UP GO",), "clear", "water", 7_000_000))

@@ -33,7 +33,8 @@ class BodyLook:
     """Colours (linear BGR) and equipment of a diver.
 
     hood: neoprene over the hair (else `hood_bgr` is hair). mask, snorkel, regulator: worn or not. bare_arms: skin
-    instead of suit below the elbow. legs: drawn or hidden (standing behind a desk, cut by the picture).
+    instead of suit below the elbow. cuff_mm: from the wrist to where the body's own arm begins. legs: drawn or
+    hidden (standing behind a desk, cut by the picture).
     """
 
     suit_bgr: tuple[float, float, float] = (0.02, 0.017, 0.014)
@@ -48,6 +49,7 @@ class BodyLook:
     snorkel: bool = False
     regulator: bool = True
     bare_arms: bool = False
+    cuff_mm: float = 35.0
     legs: bool = True
     scale: float = 1.0
 
@@ -161,7 +163,7 @@ def _add_arm(
     if look.bare_arms:
         cuff = shoulder + 0.9 * (elbow - shoulder)
         parts.add(SUIT, cuff, 51, elbow + 0.06 * (wrist - elbow), 53)
-    near = elbow + 0.9 * (wrist - elbow)
+    near = elbow + (1.0 - (look.cuff_mm + 31.0) / FOREARM_MM) * (wrist - elbow)
     parts.add(lower, elbow, 45, near, 31, 8.0)
 
 

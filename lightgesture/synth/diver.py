@@ -27,6 +27,8 @@ from lightgesture.synth.surface import Forearm, HandView
 from lightgesture.synth.water import Water
 
 SIDES = ("left", "right")
+DRAWN_PAST_CUFF_MM = 65.0
+"""How far the forearm of the finely drawn hand reaches over the arm of the coarser body."""
 FADE_SHARE = 0.35
 """Last part of the forearm's drawn length over which it fades into the body's arm."""
 
@@ -124,7 +126,9 @@ def draw_arm_hand(
     body = rotation_matrix(state.rotation)
     points = to_camera(np.stack([arm.wrist, elbow]), body, state.position)
     image, scale = camera.project(points)
-    towards = (points[1] - points[0]) * np.array([1.0, 1.0, -1.0])
+    # The hand is drawn as if on the optical axis, so its forearm must run to where the elbow is seen.
+    seen = (image[1] - image[0]) / scale[0]
+    towards = np.array([seen[0], -seen[1], points[0, 2] - points[1, 2]])
     towards = towards / max(float(np.linalg.norm(towards)), 1e-6)
     turn = arm.turn * (np.array([-1.0, 1.0, -1.0]) if left else 1.0)
     distance = float(points[0, 2]) / 1000.0
@@ -133,8 +137,8 @@ def draw_arm_hand(
     view = HandView(
         rotation, (float(image[0, 0]), float(image[0, 1])), float(scale[0]), float(points[0, 2]), left
     )
-    length = 90.0 if look.sleeve_mm is None else look.sleeve_mm + 45.0
-    forearm = Forearm(length_mm=length, sleeve_mm=look.sleeve_mm, sleeve_gap=2.0)
+    length = look.body.cuff_mm + DRAWN_PAST_CUFF_MM
+    forearm = Forearm(length_mm=length, sleeve_mm=look.sleeve_mm)
     hand = render_hand(pose, view, look.left if left else look.right, light, forearm)
     return dissolve(hand, image[0], image[1], length / float(np.linalg.norm(points[1] - points[0]))), distance
 

@@ -12,7 +12,7 @@ from lightgesture.synth.raster import Canvas, Float32
 from lightgesture.synth.shading import Light, shade
 from lightgesture.synth.skeleton import MEAN_PROPORTIONS, FloatArray, HandPose, Proportions
 from lightgesture.synth.skin import Tone, paint_atlas, skin_tone
-from lightgesture.synth.surface import HAND, Forearm, HandView, hand_cones
+from lightgesture.synth.surface import FOREARM, HAND, SLEEVE, Forearm, HandView, hand_cones, sleeve_row
 
 Box = tuple[int, int, int, int]
 SUPERSAMPLED_LENGTH_PX = 330.0
@@ -105,6 +105,9 @@ def render_hand(
     canvas = Canvas(int(size[0] * factor), int(size[1] * factor))
     for cone in cones:
         canvas.draw(cone)
+    if forearm.sleeve_mm is not None:
+        covered = (canvas.material == FOREARM) & (canvas.atlas[1] < sleeve_row(forearm.sleeve_mm))
+        canvas.material[covered] = SLEEVE
     sleeve = np.array(look.sleeve_bgr, np.float32)
     radiance = shade(canvas, look.atlas, look.tone, sleeve, light, big.px_per_mm)
     cover = (canvas.material > 0).astype(np.float32)

@@ -30,6 +30,9 @@ USUAL_SPREAD_DEG = 6.0
 SPREAD_SHARE = np.array([1.0, -0.3, -0.7, -1.2])
 """Standard deviation of the spread (index abduction), and how the fingers share in it."""
 
+OWN_WAY_PER_LOOSENESS = 2.0
+"""Below half of natural looseness, signs approach the textbook's (first) variant."""
+
 
 def _shape(
     thumb: tuple[float, ...], *up: int, abduction: tuple[float, float, float, float] | None = None
@@ -111,7 +114,8 @@ def token_pose(token: str, rng: np.random.Generator, looseness: float = 1.0) -> 
     if looseness <= 0.0:
         return HandPose(variants[0].copy(), np.zeros(2)).clipped()
     first, second = (variants[int(rng.integers(len(variants)))] for _ in range(2))
-    angles = first + (second - first) * rng.uniform(0.0, 1.0)
+    own = first + (second - first) * rng.uniform(0.0, 1.0)
+    angles = variants[0] + (own - variants[0]) * min(OWN_WAY_PER_LOOSENESS * looseness, 1.0)
     angles = _loosened(angles, token, rng, looseness)
     wrist = rng.normal([-4.0, -2.0], [12.0, 7.0]) * looseness
     return HandPose(angles, wrist).clipped()

@@ -19,7 +19,7 @@ SAMPLE_SPEC = SceneSpec(
     passage=(9, 10),
     water=WaterSpec(kind="III", depth_m=4.0, turbidity=0.16),
     backdrop=BackdropSpec(floor="sand", floor_m=1.7, caustic=0.25),
-    diver=DiverSpec(monk=3.6, blood=1.1, distance_mm=1150.0, looseness=0.35, sleeve_mm=25.0),
+    diver=DiverSpec(monk=3.6, blood=1.1, distance_mm=1150.0, looseness=0.15, sleeve_mm=25.0),
     motion=MotionSpec(drift=0.6, tremor_mm=1.5),
     camera=CameraSpec(noise=0.3, balance=0.35, drift=0.008),
 )

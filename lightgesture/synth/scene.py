@@ -32,6 +32,9 @@ STREAMS = ("script", "diver", "motion", "backdrop", "camera", "drawn", "specks")
 MIN_VISIBLE = 0.6
 """Share of a hand's outline that must be in the picture for its token to count; less is `partial`."""
 
+BARE_CUFF_MM = 40.0
+"""Where a bare forearm passes from the hand's rendering to the body's, from the wrist."""
+
 
 @dataclass(frozen=True, slots=True)
 class SceneFrame:
@@ -152,6 +155,7 @@ def diver_look(spec: DiverSpec, rng: np.random.Generator) -> DiverLook:
     body = BodyLook(
         suit_bgr=spec.suit, accent_bgr=spec.accent, skin_bgr=(blue, green, red), hood=spec.hood, mask=spec.mask,
         snorkel=spec.snorkel, regulator=spec.regulator, bare_arms=spec.sleeve_mm is None,
+        cuff_mm=BARE_CUFF_MM if spec.sleeve_mm is None else spec.sleeve_mm,
     )  # fmt: skip
     return DiverLook(body, hands[0], hands[1], spec.sleeve_mm)
 

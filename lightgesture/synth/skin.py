@@ -2,8 +2,8 @@
 
 Tones are those of the Monk Skin Tone Scale (E. Monk, 2019; sRGB values as published, lightest to darkest). The
 scale's swatches hold little blood, so haemoglobin is added as a second, independent density, as in Tsumura, Haneishi
-& Miyake, "Independent-component analysis of skin color image", JOSA A 16(9), 1999. Palms hold about half the
-melanin of the back of the hand.
+& Miyake, "Independent-component analysis of skin color image", JOSA A 16(9), 1999. Palms hold less melanin
+than the back of the hand; how much less was set by eye beside photographs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MONK_SRGB = np.array(
 )  # fmt: skip
 BLOOD_DENSITY_BGR = np.array([0.30, 0.27, 0.02])
 """Natural-log absorption of one unit of haemoglobin in blue, green and red (ratios of oxy-haemoglobin's bands)."""
-PALM_MELANIN_SHARE = 0.62
+PALM_MELANIN_SHARE = 0.68
 PALM_EXTRA_BLOOD = 0.35
 NAIL_BLOOD = 1.6
 LIMB_ROWS, LIMB_COLUMNS = 3, 5

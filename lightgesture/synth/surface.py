@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from lightgesture.synth.raster import LAYOUT, Cone, Float32, Patch
+from lightgesture.synth.raster import LAYOUT, Cone, Float32, Patch, limb_row
 from lightgesture.synth.skeleton import FloatArray, HandPose, Proportions, Skeleton, pose_skeleton
 
 HAND, FOREARM, SLEEVE = 1, 2, 3
@@ -36,11 +36,10 @@ MEAN_PALM = np.array([91.0, 93.0])  # breadth and length that the constants abov
 
 @dataclass(frozen=True, slots=True)
 class Forearm:
-    """What is seen below the wrist: length and, from `sleeve_mm` on (None: bare), a sleeve `sleeve_gap` mm wider."""
+    """What is seen below the wrist: `length_mm` of forearm, in a sleeve from `sleeve_mm` on (None: bare)."""
 
     length_mm: float = 150.0
     sleeve_mm: float | None = None
-    sleeve_gap: float = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +91,8 @@ class _Flesh:
         self.kinds.append(kind)
 
 
+FOREARM_TILE_MM = 500.0
+"""Length that stands for a bone's in the forearm's tile, so that 125 mm of it lie within the tile's margin."""
 PALM_SEGMENT, FOREARM_SEGMENT = 0, 15
 """Segments 1..14 are the thumb's two phalanges and three of each finger, in order."""
 
@@ -126,15 +127,12 @@ def _add_forearm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions, fo
         far = skeleton.forearm @ np.array([side * 16.0 * thick, -forearm.length_mm, -1.0])
         swell = 16.5 + 0.045 * forearm.length_mm
         flesh.add(near, 16.5 * thick, far, swell * thick, PALM_BLEND_MM, (FOREARM, FOREARM_SEGMENT))
-    if forearm.sleeve_mm is None or forearm.sleeve_mm >= forearm.length_mm:
-        return
-    for start, wider, end in ((0.0, 1.4, 9.0), (4.0, 0.0, forearm.length_mm)):
-        for side in (-1.0, 0.0, 1.0):
-            begin, stop = forearm.sleeve_mm + start, min(forearm.sleeve_mm + end, forearm.length_mm + 20.0)
-            near = skeleton.forearm @ np.array([side * (12.0 + 0.03 * begin) * thick, -begin, -1.0])
-            far = skeleton.forearm @ np.array([side * (12.0 + 0.03 * stop) * thick, -stop, -1.0])
-            ra, rb = ((16.5 + 0.045 * at) * thick + forearm.sleeve_gap + wider for at in (begin, stop))
-            flesh.add(near, ra, far, rb, FINGER_BLEND_MM, (SLEEVE, FOREARM_SEGMENT))
+
+
+def sleeve_row(sleeve_mm: float) -> float:
+    """Atlas row above which the forearm is covered by a sleeve that begins `sleeve_mm` from the wrist."""
+    along = np.array(-sleeve_mm / FOREARM_TILE_MM, np.float32)
+    return float(limb_row(segment_tile(FOREARM_SEGMENT)[1], along))
 
 
 def _add_palm(flesh: _Flesh, skeleton: Skeleton, proportions: Proportions) -> None:
@@ -215,7 +213,7 @@ def _patch(segment: int, skeleton: Skeleton, view: HandView) -> Patch:
     if segment == PALM_SEGMENT:
         bone, frame, length = 0, np.eye(3), float(skeleton.points[9, 1])
     elif segment == FOREARM_SEGMENT:
-        bone, frame, length = 0, skeleton.forearm, 250.0
+        bone, frame, length = 0, skeleton.forearm, FOREARM_TILE_MM
     else:
         bone = _bone_of(segment)
         frame = skeleton.frames[bone]

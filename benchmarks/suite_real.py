@@ -14,17 +14,23 @@ import cv2
 import numpy as np
 
 import lightgesture.synth
+from lightgesture.benchmarks import suite_cast
 from lightgesture.benchmarks.suite_cache import Take, source_digest
+from lightgesture.benchmarks.suite_cast import (
+    SETTINGS,
+    Row,
+    cast,
+    group_people,
+    load_backdrop,
+    load_hands,
+)
 from lightgesture.benchmarks.suite_scenarios import REAL, Scenario, scenarios, scene_spec
-from lightgesture.datasets import read_landmarks, read_table
-from lightgesture.errors import InputError
+from lightgesture.datasets import read_table
 from lightgesture.fsm import load_grammar
 from lightgesture.records import FrameRecord, Hand
-from lightgesture.sources import read_picture
 from lightgesture.synth.body import Camera
 from lightgesture.synth.camera import CameraLook, Sensor
 from lightgesture.synth.diver import SIDES
-from lightgesture.synth.hand import decode, encode
 from lightgesture.synth.motion import Drift, Performance, Style
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.scene import MIN_VISIBLE, SceneFrame
@@ -40,34 +46,10 @@ from lightgesture.synth.script import (
 from lightgesture.synth.spec import SceneSpec
 from lightgesture.synth.variety import stream
 from lightgesture.training import cutouts, diver_composites, real_hands, surroundings
-from lightgesture.training.cutouts import Cutout, cut_out
-from lightgesture.training.diver_composites import THUMB_TOKENS, body_look
-from lightgesture.training.real_hands import PastedHand, Shown, draw_diver, skin_colour
+from lightgesture.training.cutouts import Cutout
+from lightgesture.training.diver_composites import body_look
+from lightgesture.training.real_hands import PastedHand, Shown, draw_diver
 from lightgesture.training.surroundings import light_under_water, water_of_picture
-
-Row = dict[str, str]
-Random = np.random.Generator
-
-
-@dataclass(frozen=True, slots=True)
-class RealSettings:
-    """pictures: most pictures of one hand and sign that take turns in a hold. change_frames: how long each is seen.
-    fade_frames: of that, how long the next one comes up. scenery: sets of `negatives` used. zoom: how much larger
-    than a frame the picture behind is, which leaves room to move it. sway_px: standard deviation of that movement.
-    gain: bounds within which another person's hand is tinted to match. bare_arms: share.
-    """
-
-    pictures: int = 4
-    change_frames: int = 9
-    fade_frames: int = 4
-    scenery: tuple[str, ...] = ("gatedet", "subbots", "waternet")
-    zoom: float = 1.15
-    sway_px: float = 8.0
-    gain: tuple[float, float] = (0.5, 2.0)
-    bare_arms: float = 0.4
-
-
-SETTINGS = RealSettings()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +73,7 @@ def real_takes(data: Path) -> list[Take]:
     """The clips of real hands; none where the folder lacks hands or pictures to put behind them."""
     if not ((data / "hands" / "val.csv").is_file() and (data / "negatives" / "negatives.csv").is_file()):
         return []
-    people = _people(read_table(data, "hands/val.csv"))
+    people = group_people(read_table(data, "hands/val.csv"))
     pictures = [
         row
         for row in read_table(data, "negatives/negatives.csv")
@@ -104,7 +86,7 @@ def real_takes(data: Path) -> list[Take]:
     for scenario in scenarios(REAL):
         rng = stream(scenario.seed, "suite")
         picture = pictures[int(rng.integers(len(pictures)))]
-        hands = _cast(people, _tokens(scenario), rng)
+        hands = cast(people, _tokens(scenario), rng)
         spec = scene_spec(scenario)
         named = replace(scenario, difficulty=f"before {picture['set']}")
         paths = [row["path"] for token in sorted(hands) for row in hands[token]]
@@ -117,7 +99,7 @@ def _digest(data: Path) -> str:
     package = Path(lightgesture.synth.__file__).parent
     parts = [Path(str(part.__file__)) for part in (cutouts, diver_composites, real_hands, surroundings)]
     tables = [data / "hands" / "val.csv", data / "negatives" / "negatives.csv"]
-    return source_digest([*package.glob("*.py"), *parts, Path(__file__), *tables])
+    return source_digest([*package.glob("*.py"), *parts, Path(__file__), Path(suite_cast.__file__), *tables])
 
 
 def _tokens(scenario: Scenario) -> list[str]:
@@ -125,36 +107,6 @@ def _tokens(scenario: Scenario) -> list[str]:
     grammar = load_grammar()
     pairs = [word_pairs(grammar, sentence_words(sentence)) for sentence in scenario.sentences]
     return list(dict.fromkeys(token for part in pairs for pair, _ in part for token in pair))
-
-
-def _people(rows: Sequence[Row]) -> list[dict[str, list[Row]]]:
-    """Undoubted pictures by person and token; a person is a subject of a source, or a source without subjects."""
-    people: dict[tuple[str, str], dict[str, list[Row]]] = {}
-    for row in rows:
-        if "doubtful" not in row["note"].split():
-            person = people.setdefault((row["set"], row["subject"]), {})
-            person.setdefault(row["token"], []).append(row)
-    return [people[key] for key in sorted(people)]
-
-
-def _cast(
-    people: Sequence[dict[str, list[Row]]], tokens: Sequence[str], rng: Random
-) -> dict[str, tuple[Row, ...]]:
-    """Pictures for each token: of one person as far as they go, else of whoever has most of that token."""
-    order = [people[index] for index in rng.permutation(len(people))]
-    known = sorted(order, key=lambda person: -sum(token in person for token in tokens))
-    # Not always the same person: whoever has more than half of the tokens may sign.
-    able = [person for person in known if 2 * sum(token in person for token in tokens) > len(tokens)]
-    main = able[int(rng.integers(len(able)))] if able else known[0]
-    hands = {}
-    for token in tokens:
-        owner = main if token in main else max(order, key=lambda person: len(person.get(token, ())))
-        own = owner.get(token, [])
-        if not own:
-            raise InputError(f"hands/val holds no picture of {token}; --data must name a complete folder")
-        chosen = rng.permutation(len(own))[: SETTINGS.pictures]
-        hands[token] = tuple(own[int(index)] for index in chosen)
-    return hands
 
 
 class _RealScene:
@@ -169,8 +121,8 @@ class _RealScene:
         self.frame_count = self._timeline[-1].end
         self._performance = Performance(self._timeline, _style(spec), rng, self.frame_count / take.fps)
         self._camera = Camera(spec.camera.focal * spec.size[0], (0.5 * spec.size[0], 0.5 * spec.size[1]))
-        self._hands = _load_hands(take)
-        self._behind = _load_backdrop(take)
+        self._hands = load_hands(take.data, take.hands)
+        self._behind = load_backdrop(take.backdrop, take.size)
         self._sway = Drift(rng, 2, 0.15)
         typical = self._backdrop(0.0)
         self._water = water_of_picture(typical, spec.diver.distance_mm / 1000.0, rng)
@@ -190,8 +142,10 @@ class _RealScene:
             picture = self._backdrop(time_s)
             shown = {side: self._shown(side, moment, index) for side in SIDES}
             pasted, _ = draw_diver(picture, state, self._look, shown, self._camera, self._light, self._water)
-            tokens = dict(zip(SIDES, tokens_at(self._timeline, moment), strict=True))
-            hands = tuple(_truth(hand, tokens[hand.side]) for hand in pasted if hand.visible > 0.0)
+            tokens = tokens_at(self._timeline, moment)
+            hands = tuple(
+                _truth(hand, tokens[SIDES.index(hand.side)]) for hand in pasted if hand.visible > 0.0
+            )
             record = FrameRecord(source=None, frame=index, time_s=time_s, hands=hands)
             yield SceneFrame(self._sensor.expose(picture, index, time_s), record)
 
@@ -230,45 +184,6 @@ def _token_near(timeline: Sequence[Hold], number: int, side: str) -> str:
         if hold.pair is not None:
             return hold.pair[SIDES.index(side)]
     raise ValueError("a script without a sign")
-
-
-def _load_hands(take: RealTake) -> dict[str, dict[str, list[Cutout]]]:
-    """Cut-outs by side and token, tinted like the first of them; `left` and `right` keep their thumbs' meaning."""
-    target: tuple[float, float, float] | None = None
-    hands: dict[str, dict[str, list[Cutout]]] = {side: {} for side in SIDES}
-    for token, rows in take.hands.items():
-        for row in rows:
-            landmarks = read_landmarks(row)
-            cutout = cut_out(read_picture(take.data / "hands" / row["path"]), landmarks, token, row["set"])
-            if cutout is None:
-                continue
-            target = target or skin_colour(cutout)
-            tinted = _tinted(cutout, target)
-            flipped = replace(tinted.mirrored(), token=token)
-            # Landmarks 2 and 17: base of the thumb and of the little finger. A palm's thumb points inwards.
-            is_left = token in THUMB_TOKENS or bool(landmarks[2, 0] < landmarks[17, 0])
-            hands["left"].setdefault(token, []).append(tinted if is_left else flipped)
-            hands["right"].setdefault(token, []).append(flipped if is_left else tinted)
-        if token not in hands["left"]:
-            raise InputError(f"{rows[0]['path']}: no hand of {token} can be cut out; restore the pictures")
-    return hands
-
-
-def _tinted(cutout: Cutout, target: tuple[float, float, float]) -> Cutout:
-    """The hand with the mean colour of another, within bounds: one diver has one skin."""
-    gain = np.clip(np.array(target) / np.maximum(skin_colour(cutout), 1e-3), *SETTINGS.gain)
-    return replace(cutout, image=encode(decode(cutout.image) * gain.astype(np.float32)))
-
-
-def _load_backdrop(take: RealTake) -> Float32:
-    """The picture behind, linear, cut to the frame's shape and larger than it by the zoom."""
-    picture = read_picture(take.backdrop)
-    width, height = (round(side * SETTINGS.zoom) for side in take.size)
-    scale = max(width / picture.shape[1], height / picture.shape[0])
-    size = max(width, round(picture.shape[1] * scale)), max(height, round(picture.shape[0] * scale))
-    large = cv2.resize(picture, size, interpolation=cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR)
-    left, top = (size[0] - width) // 2, (size[1] - height) // 2
-    return decode(np.asarray(large[top : top + height, left : left + width], np.uint8))
 
 
 def _style(spec: SceneSpec) -> Style:

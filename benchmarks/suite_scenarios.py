@@ -25,7 +25,7 @@ SIZE = (480, 360)
 FPS = 30.0
 HOLD_FRAMES = (21, 31)
 """Shortest and longest hold of a sign: people hold it for the 15 frames of the dwell and a little longer."""
-EDGE_MM = 38.0
+EDGE_MM = 46.0
 """From the wrist to the picture's edge where hands are partly out of view: up to a third of a hand, as it drifts."""
 CALM = 0.35
 """Difficulty of everything but what a scenario is named after, as `draw_spec` takes it."""
@@ -173,7 +173,7 @@ def _difficulty(name: str, parts: dict[str, Any], rng: np.random.Generator) -> d
         "out of view": {
             "diver": {"wrist_mm": (edge, 60.0, 220.0), "distance_mm": near},
             "camera": {"focal": focal},
-            "motion": {"drift": 0.6, "approach_mm": 0.0},
+            "motion": {"drift": 0.3, "approach_mm": 0.0},
         },
         "turbid": {"water": {"turbidity": float(rng.uniform(0.8, 1.2))}},
         "cast": {"water": {"kind": str(rng.choice(("III", "5C", "7C"))), "depth_m": float(rng.uniform(5.0, 8.0))},

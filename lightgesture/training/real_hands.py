@@ -5,7 +5,7 @@ arithmetic is in linear light. For training and benchmarks on the user's own mac
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -30,13 +30,13 @@ STRETCHED_IN_PALMS = 2.28
 @dataclass(frozen=True, slots=True)
 class RealHandSettings:
     """palm_mm: length of the palm of a person as large as the synthetic diver. wrist_deg: how far a hand leans
-    against its forearm, degrees. arm_reach: where the drawn forearm ends, as a share of the way from elbow to
-    wrist: the body's own arms end before the wrist and would leave a gap.
+    against its forearm, degrees. cuff_mm: from the wrist to where the body's own arm ends, less the 31 mm of its
+    rounded end: the arm reaches the wrist, because no forearm comes with the hand.
     """
 
     palm_mm: float = 92.0
     wrist_deg: float = 32.0
-    arm_reach: float = 1.1
+    cuff_mm: float = -28.0
 
 
 SETTINGS = RealHandSettings()
@@ -60,7 +60,8 @@ class Shown:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PastedHand:
-    """side: the diver's own. box: outline inside the picture. visible: share of the hand that is inside, 0 to 1."""
+    """side: the diver's own. box: outline inside the picture. visible: share of the hand that is inside it and
+    not covered by the other one, 0 to 1."""
 
     side: str
     box: Box
@@ -95,33 +96,36 @@ def draw_diver(
     size = (picture.shape[1], picture.shape[0])
     rotation = rotation_matrix(state.rotation)
     arms = {"left": state.left, "right": state.right}
-    ends = tuple(
-        _arm_end(arm.wrist, 1.0 if side == "left" else -1.0, look.scale) for side, arm in arms.items()
-    )
-    radiance, cover = render_body(
-        look, rotation, state.position, (ends[0], ends[1]), camera, size, light, water
-    )
+    worn = replace(look, cuff_mm=SETTINGS.cuff_mm)
+    wrists = (state.left.wrist, state.right.wrist)
+    radiance, cover = render_body(worn, rotation, state.position, wrists, camera, size, light, water)
     picture *= 1.0 - cover[..., None]
     picture += radiance
-    pasted = []
     depth = {side: float(to_camera(arms[side].wrist[None], rotation, state.position)[0, 2]) for side in hands}
+    laid: list[tuple[str, Float, float]] = []
     for side in sorted(hands, key=lambda name: -depth[name]):
-        matrix = _placement(arms[side], side, state, look.scale, camera)
-        layer, visible = _warp(hands[side], matrix, size, light_colour(light))
+        place = _placement(arms[side], side, state, look.scale, camera)
+        layer, inside = _warp(hands[side], place, size, light_colour(light))
         seen = layer.radiance
         if water is not None:
             seen = water.see_through(seen, layer.alpha, depth[side] / 1000.0)
         picture *= 1.0 - layer.alpha[..., None]
         picture += seen
         np.maximum(cover, layer.alpha, out=cover)
-        pasted.append(PastedHand(side, _outline(layer.alpha), visible))
-    return pasted, cover
+        laid.append((side, layer.alpha, inside))
+    return _uncovered(laid), cover
 
 
-def _arm_end(wrist: NDArray[np.float64], outward: float, scale: float) -> NDArray[np.float64]:
-    shoulder = SHOULDER * scale * np.array([outward, 1.0, 1.0])
-    elbow = elbow_position(shoulder, wrist, outward, scale)
-    return np.asarray(elbow + SETTINGS.arm_reach * (wrist - elbow))
+def _uncovered(laid: Sequence[tuple[str, Float, float]]) -> list[PastedHand]:
+    """Truth of hands laid one over the other, farthest first: what a nearer one covers is not seen."""
+    hands = []
+    for order, (side, alpha, inside) in enumerate(laid):
+        free = alpha
+        for _, nearer, _ in laid[order + 1 :]:
+            free = free * (1.0 - nearer)
+        share = float(free.sum()) / max(float(alpha.sum()), 1e-6)
+        hands.append(PastedHand(side, _outline(free), inside * share))
+    return hands
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,6 +60,16 @@ def test_a_hand_at_the_edge_is_seen_in_part():
     assert pasted["left"].box[0] + pasted["left"].box[2] == SIZE[0]
 
 
+def test_a_hand_behind_the_other_is_seen_in_part():
+    state = a_state()
+    near = replace(state.right, wrist=np.array([-20.0, 60.0, 300.0]))
+    far = replace(state.left, wrist=np.array([20.0, 60.0, 150.0]))
+    hands = {side: drawn_cutout("0") for side in ("left", "right")}
+    _, pasted, _ = draw(hands, replace(state, left=far, right=near))
+    assert pasted["right"].visible == pytest.approx(1.0, abs=0.03)
+    assert pasted["left"].visible < 0.7
+
+
 def test_hands_shrink_with_distance_and_fade_in_water():
     near, boxes, _ = draw({"left": drawn_cutout("0")})
     _, far_boxes, _ = draw({"left": drawn_cutout("0")}, a_state(1800.0))

@@ -98,7 +98,8 @@ class Backdrop:
         x, z, seen = self._floor
         drift = np.float32(0.13 * time_s)
         first = self._sample(self._caustics, x + drift, z, 1.7)
-        second = self._sample(self._caustics, x * np.float32(0.8) - z * np.float32(0.6), z - drift, 2.1)
+        across = np.asarray(x * np.float32(0.8) - z * np.float32(0.6), np.float32)
+        second = self._sample(self._caustics, across, z - drift, 2.1)
         net = np.minimum(first, second)
         light = (1.0 - self.look.caustic) + np.float32(self.look.caustic * 1.6) * np.minimum(net, 3.0)
         plane = self._static * light[..., None] * self.water.light * np.float32(0.8)

@@ -93,7 +93,7 @@ def align(start: FloatArray, target: FloatArray) -> FloatArray:
 def _across(vector: FloatArray) -> FloatArray:
     other = np.eye(3)[int(np.argmin(np.abs(vector)))]
     normal = np.cross(vector, other)
-    return np.asarray(normal / np.linalg.norm(normal))
+    return np.asarray(normal / np.linalg.norm(normal), np.float64)
 
 
 def settle_wrist(

@@ -129,7 +129,7 @@ def _surface(cone: Cone, x: Float32, y: Float32) -> tuple[Float32, Float32]:
     inside = depth > 0.0
     dz = np.sqrt(np.maximum(depth, 0.0))
     height = np.where(inside, np.float32(az) + np.float32(bz) * along + dz, np.float32(EMPTY_HEIGHT))
-    return height, np.stack([dx, dy, dz]) / radius
+    return height, np.asarray(np.stack([dx, dy, dz]) / radius, np.float32)
 
 
 def _axis_position(

@@ -75,7 +75,7 @@ class Room:
         warm = rng.uniform(0.85, 1.0)
         key, ambient = (front * warm * 0.9, front * 0.96, front), 0.45 * front
         x = float(rng.uniform(-0.8, 0.8))
-        return Light((x, -0.75, 0.6), key, (ambient,) * 3, (0.6 * ambient,) * 3, shadow=0.6)
+        return Light((x, -0.75, 0.6), key, _grey(ambient), _grey(0.6 * ambient), shadow=0.6)
 
     def _walls(self, rng: np.random.Generator) -> Float32:
         width, height = self.size
@@ -126,6 +126,10 @@ class Room:
             self._rectangle(picture, (x + part * w - 0.006, y, x + part * w + 0.006, y + h), dark)
         if rng.uniform() < 0.4:
             for row in np.arange(y, y + h, 0.035):
-                self._rectangle(picture, (x, row, x + w, row + 0.012), (bright * 0.6,) * 3)
+                self._rectangle(picture, (x, row, x + w, row + 0.012), _grey(bright * 0.6))
         glow = cv2.GaussianBlur(np.maximum(picture - 1.0, 0.0), (0, 0), 0.06 * self.size[0])
         picture += np.float32(0.25) * glow
+
+
+def _grey(level: float) -> Colour:
+    return (level, level, level)

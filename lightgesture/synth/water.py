@@ -85,9 +85,8 @@ class Water:
     def see_points(self, radiance: Float32, distance_m: Float32) -> Float32:
         """Radiance (n, 3) of points at their own distances (n,), as the camera sees it."""
         through = np.exp(-distance_m[:, None] * self.attenuation)
-        return np.asarray(
-            radiance * through + self.veil * (1.0 - np.exp(-distance_m[:, None] * self.backscatter))
-        )
+        seen = radiance * through + self.veil * (1.0 - np.exp(-distance_m[:, None] * self.backscatter))
+        return np.asarray(seen, np.float32)
 
     def blur_sigma(self, distance_m: float, width: int) -> float:
         """Forward-scatter blur in pixels of a picture `width` pixels wide."""

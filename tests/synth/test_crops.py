@@ -1,6 +1,8 @@
+import cv2
 import numpy as np
 import pytest
 
+from lightgesture.synth import sheet
 from lightgesture.synth.crops import MARGIN, CropMaker, CropSettings
 
 FEW = CropSettings(backdrops=1)
@@ -59,3 +61,18 @@ def test_all_tokens_come_in_turn():
         "ok",
         "0",
     ]
+
+
+def test_a_sheet_has_a_row_for_every_token(monkeypatch):
+    monkeypatch.setattr(sheet, "HANDS_A_ROW", 1)
+    picture = sheet.hand_sheet(1)
+    assert picture.shape == (11 * sheet.TILE_PX, sheet.TILE_PX, 3)
+    assert all(row.std() > 2.0 for row in picture.reshape(11, -1))
+
+
+def test_a_sheet_is_written_whole(tmp_path, monkeypatch):
+    drawn = np.full((20, 30, 3), 90, np.uint8)
+    monkeypatch.setitem(sheet.SHEETS, "hands", lambda: drawn)
+    sheet.main(["hands", str(tmp_path / "a.jpg")])
+    assert [path.name for path in tmp_path.iterdir()] == ["a.jpg"]
+    assert cv2.imread(str(tmp_path / "a.jpg")).shape == (20, 30, 3)

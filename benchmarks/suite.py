@@ -12,7 +12,7 @@ from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_til
 from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.regions import MAX_BOXES
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_cache import CacheSettings, Clip, Take, fetch_clip, source_digest
+from lightgesture.benchmarks.suite_cache import CacheSettings, Clip, Take, fetch_clips, source_digest
 from lightgesture.benchmarks.suite_real import real_takes
 from lightgesture.benchmarks.suite_scenarios import (
     FPS,
@@ -99,12 +99,11 @@ def choose_takes(takes: Sequence[Take], only: Sequence[str], is_quick: bool) -> 
 
 
 def run_suite(
-    methods: Sequence[Method], takes: Sequence[Take], folder: Path, progress: Progress
+    methods: Sequence[Method], takes: Sequence[Take], folder: Path, progress: Progress, jobs: int = 1
 ) -> list[ClipAnswer]:
-    """Every method on every take; `folder` is the cache."""
+    """Every method on every take; `folder` is the cache, `jobs` the processes that render what it lacks."""
     answers = []
-    for take in progress(takes, takes[0].scenario.suite if takes else ""):
-        clip = fetch_clip(take, folder)
+    for _, clip in zip(progress(takes, "suite"), fetch_clips(takes, folder, jobs), strict=True):
         answers += [run_clip(method, clip) for method in methods]
     return answers
 

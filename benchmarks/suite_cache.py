@@ -6,15 +6,20 @@ of the truth holds the digests of both, so that a half-written or damaged clip i
 
 import hashlib
 import json
+import multiprocessing
 import os
 import shutil
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
+
+import cv2
 
 from lightgesture._version import __version__
 from lightgesture.benchmarks.suite_scenarios import Scenario
@@ -98,19 +103,14 @@ def source_digest(paths: Iterable[Path]) -> str:
     return digest.hexdigest()[:16]
 
 
-def fetch_clip(
-    take: Take,
-    folder: Path,
-    advance: Callable[[], None] = lambda: None,
-    settings: CacheSettings | None = None,
-) -> Clip:
-    """The clip of a take, from `folder` or rendered now (`advance` after each frame)."""
+def fetch_clip(take: Take, folder: Path, settings: CacheSettings | None = None) -> Clip:
+    """The clip of a take, from `folder` or rendered now."""
     settings = settings or CacheSettings()
     recipe = f"{__version__} {settings.hold} {take.scenario} {take.recipe}"
     place = folder / hashlib.sha256(recipe.encode()).hexdigest()[:32]
     clip = _read(take.scenario, place)
     if clip is None:
-        _render(take, place, advance, settings)
+        _render(take, place, settings)
         _sweep(folder, place, settings)
         clip = _read(take.scenario, place)
         if clip is None:
@@ -120,31 +120,54 @@ def fetch_clip(
     return clip
 
 
-def _render(take: Take, place: Path, advance: Callable[[], None], settings: CacheSettings) -> None:
-    partial = place.with_name(f".{uuid.uuid4().hex}.part")
+def fetch_clips(takes: Sequence[Take], folder: Path, jobs: int = 1) -> Iterator[Clip]:
+    """The clips of takes in order, rendered where needed by `jobs` processes of one thread each (1: in this one)."""
+    if jobs <= 1:
+        for take in takes:
+            yield fetch_clip(take, folder)
+        return
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(jobs, context, initializer=cv2.setNumThreads, initargs=(1,)) as pool:
+        try:
+            yield from pool.map(partial(fetch_clip, folder=folder), takes)
+        except BaseException:  # an interruption must not wait for clips that nobody needs any more
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _render(take: Take, place: Path, settings: CacheSettings) -> None:
+    building = place.with_name(f".{uuid.uuid4().hex}.part")
     try:
-        partial.mkdir(parents=True)
+        building.mkdir(parents=True)
         lines = []
-        with video_writer(partial / VIDEO, take.fps, take.size) as put:
+        with video_writer(building / VIDEO, take.fps, take.size) as put:
             for frame, records in with_truth(take.frames(), load_grammar(), settings.hold):
                 put(frame.image)
                 lines += [to_json_line(record) for record in records]
-                advance()
         text = "\n".join(lines) + "\n"
         end = {
             "type": "end",
-            "video": _digest((partial / VIDEO).read_bytes()),
+            "video": _digest((building / VIDEO).read_bytes()),
             "truth": _digest(text.encode()),
         }
-        (partial / TRUTH).write_text(text + json.dumps(end) + "\n", encoding="utf-8")
-        shutil.rmtree(place, ignore_errors=True)
-        os.replace(partial, place)
+        (building / TRUTH).write_text(text + json.dumps(end) + "\n", encoding="utf-8")
+        _publish(building, place)
     except OSError as error:
         raise InputError(
             f"{place.parent}: cannot be written ({error.strerror}); set XDG_CACHE_HOME to another folder"
         ) from error
     finally:
-        shutil.rmtree(partial, ignore_errors=True)
+        shutil.rmtree(building, ignore_errors=True)
+
+
+def _publish(building: Path, place: Path) -> None:
+    shutil.rmtree(place, ignore_errors=True)
+    try:
+        os.replace(building, place)
+    except OSError:
+        # Another process may have published the same clip in between: its pixels are the same.
+        if not (place / TRUTH).is_file():
+            raise
 
 
 def _read(scenario: Scenario, place: Path) -> Clip | None:

@@ -41,6 +41,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="with suite: a part (water, land, real, negative) or a clip such as water-03 (repeatable)",
     )
+    parser.add_argument(
+        "--jobs", type=int, default=1, metavar="N", help="with suite: processes that render clips (default 1)"
+    )
     parser.add_argument("--quick", action="store_true", help="with suite: every fifth clip")
     parser.add_argument("--out", metavar="DIR", help="write contact sheets of the failures here")
 
@@ -54,6 +57,8 @@ def run(args: argparse.Namespace) -> int:
 
     if args.target != SUITE and (args.only or args.quick):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
+    if args.jobs < 1:
+        raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
     if args.target == SUITE:
@@ -98,7 +103,7 @@ def run_suite(args: argparse.Namespace) -> int:
     except ModelError as error:
         raise UsageError(str(error)) from error
     chosen = suite.choose_takes(takes, args.only or (), args.quick)
-    answers = suite.run_suite(methods, chosen, cache_folder(), show_progress)
+    answers = suite.run_suite(methods, chosen, cache_folder(), show_progress, args.jobs)
     print_tables(suite_tables.all_tables(answers, methods[0].name), args.json)
     if args.out:
         for path in suite.save_tiles(answers, Path(args.out), say):

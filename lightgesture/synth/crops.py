@@ -53,7 +53,7 @@ class CropSettings:
     """
 
     size: tuple[int, int] = (40, 112)
-    palm: float = 0.75
+    palm: float = 0.85
     glove: float = 0.03
     water: float = 0.3
     none: float = 0.1
@@ -249,7 +249,7 @@ def _photographed(picture: Float32, rng: np.random.Generator) -> NDArray[np.uint
     """The picture as a camera of changing quality keeps it."""
     look = CameraLook(
         target=float(rng.uniform(0.12, 0.4)), balance=float(rng.uniform(0.0, 0.6)), drift=0.0,
-        shot=0.0006 * float(rng.uniform(0.2, 6.0)), read=0.004 * float(rng.uniform(0.2, 4.0)),
+        shot=0.0006 * float(rng.uniform(0.1, 3.0)), read=0.004 * float(rng.uniform(0.1, 2.0)),
         blur_px=float(rng.uniform(0.0, 1.1)), jpeg=int(rng.integers(40, 96)) if rng.uniform() < 0.6 else 0,
         motion_px=float(rng.uniform(2.0, 5.0)) if rng.uniform() < 0.1 else 0.0,
     )  # fmt: skip

@@ -13,9 +13,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import BodyLook, Camera, render_body
-from lightgesture.synth.camera import CameraLook, Sensor
+from lightgesture.synth.conditions import draw_light, photographed, triple
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -30,7 +31,7 @@ from lightgesture.synth.raster import Float32
 from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.shading import Light
 from lightgesture.synth.skeleton import FloatArray, rotation_x, rotation_y, rotation_z, sample_proportions
-from lightgesture.synth.skin import glove_tone, paint_atlas, skin_tone
+from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.surface import Forearm, HandView
 from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
 from lightgesture.synth.water import JERLOV_BGR, Water, make_water
@@ -132,10 +133,10 @@ class CropMaker:
     def _draw_person(self, picture: Float32, light: Light) -> None:
         """Somebody behind the hand, as in most pictures from webcams: face, hair and a shirt."""
         rng = self._rng
-        blue, green, red = _triple(skin_tone(float(rng.uniform(1.0, 9.5))).back)
+        blue, green, red = triple(skin_tone(float(rng.uniform(1.0, 9.5))).back)
         look = BodyLook(
-            suit_bgr=_triple(rng.uniform(0.01, 0.7, 3)), accent_bgr=_triple(rng.uniform(0.01, 0.7, 3)),
-            skin_bgr=(blue, green, red), hood_bgr=_triple(rng.uniform(0.005, 0.12) * np.array([0.5, 0.7, 1.0])),
+            suit_bgr=triple(rng.uniform(0.01, 0.7, 3)), accent_bgr=triple(rng.uniform(0.01, 0.7, 3)),
+            skin_bgr=(blue, green, red), hood_bgr=triple(rng.uniform(0.005, 0.12) * np.array([0.5, 0.7, 1.0])),
             hood=False, mask=False, regulator=False, legs=False,
         )  # fmt: skip
         size = (picture.shape[1], picture.shape[0])
@@ -177,7 +178,7 @@ class CropMaker:
         )
         view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)
         pose = token_pose(shape, rng, float(rng.uniform(*settings.looseness)))
-        hand = render_hand(pose, view, look, _draw_light(rng, water), Forearm(110.0, bare))
+        hand = render_hand(pose, view, look, draw_light(rng, water), Forearm(110.0, bare))
         if water is None:
             return hand
         return replace(
@@ -198,7 +199,7 @@ class CropMaker:
         scale = side / whole
         interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
         picture = np.asarray(cv2.resize(picture, (side, side), interpolation=interpolation), np.float32)
-        image = _photographed(picture, rng)
+        image = photographed(picture, rng)
         offset = (-round(corner[0]), -round(corner[1]))
         x, y, width, height = hand.box
         box = (
@@ -222,35 +223,3 @@ class CropMaker:
         if rng.uniform() < 0.5:
             window = window[:, ::-1]
         return np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_LINEAR), np.float32)
-
-
-def _draw_light(rng: np.random.Generator, water: Water | None) -> Light:
-    """A light from above or the side, warm or cold in air, as the water leaves it below."""
-    angle = rng.uniform(-1.3, 1.3)
-    direction = (
-        float(np.sin(angle)),
-        float(-np.cos(angle)) * float(rng.uniform(0.3, 1.0)),
-        float(rng.uniform(0.15, 1.0)),
-    )
-    colour = water.light if water is not None else rng.uniform([0.7, 0.85, 0.9], [1.0, 1.0, 1.0])
-    strength = float(np.exp(rng.uniform(-1.2, 0.1)))
-    share = float(rng.uniform(0.25, 0.7))
-    key, sky, ground = (
-        colour * strength * part for part in (1.0 - share, share * 0.9, share * rng.uniform(0.3, 0.8))
-    )
-    return Light(direction, _triple(key), _triple(sky), _triple(ground), float(rng.uniform(0.2, 0.75)))
-
-
-def _triple(values: NDArray[np.floating]) -> tuple[float, float, float]:
-    return float(values[0]), float(values[1]), float(values[2])
-
-
-def _photographed(picture: Float32, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """The picture as a camera of changing quality keeps it."""
-    look = CameraLook(
-        target=float(rng.uniform(0.12, 0.4)), balance=float(rng.uniform(0.0, 0.6)), drift=0.0,
-        shot=0.0006 * float(rng.uniform(0.1, 3.0)), read=0.004 * float(rng.uniform(0.1, 2.0)),
-        blur_px=float(rng.uniform(0.0, 1.1)), jpeg=int(rng.integers(40, 96)) if rng.uniform() < 0.6 else 0,
-        motion_px=float(rng.uniform(2.0, 5.0)) if rng.uniform() < 0.1 else 0.0,
-    )  # fmt: skip
-    return Sensor(look, (picture.shape[1], picture.shape[0]), rng, margin=0).expose(picture, 0, 0.0)

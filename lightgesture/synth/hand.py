@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.raster import Canvas, Float32
 from lightgesture.synth.shading import Light, shade
 from lightgesture.synth.skeleton import MEAN_PROPORTIONS, FloatArray, HandPose, Proportions
-from lightgesture.synth.skin import Tone, paint_atlas, skin_tone
+from lightgesture.synth.skin import Tone, skin_tone
 from lightgesture.synth.surface import FOREARM, HAND, SLEEVE, Forearm, HandView, hand_cones, sleeve_row
 
 Box = tuple[int, int, int, int]

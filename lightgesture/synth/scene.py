@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from lightgesture.fsm import Grammar, load_grammar
 from lightgesture.records import FrameRecord, Hand
+from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
 from lightgesture.synth.camera import CameraLook, Sensor
@@ -23,7 +24,7 @@ from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.script import Hold, Timing, make_timeline, tokens_at
 from lightgesture.synth.shading import Light
 from lightgesture.synth.skeleton import sample_proportions
-from lightgesture.synth.skin import glove_tone, paint_atlas, skin_tone
+from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.spec import DiverSpec, SceneSpec
 from lightgesture.synth.specks import Bubbles, Particles, mirror_in_surface
 from lightgesture.synth.water import Water, make_water

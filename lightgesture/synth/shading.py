@@ -14,8 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.synth.atlas import smoothstep, unpack_texture
 from lightgesture.synth.raster import LAYOUT, Canvas, Float32
-from lightgesture.synth.skin import BLOOD_DENSITY_BGR, Tone, smoothstep, unpack_texture
+from lightgesture.synth.skin import BLOOD_DENSITY_BGR, Tone
 from lightgesture.synth.surface import FOREARM, HAND, SLEEVE
 
 Mask = NDArray[np.bool_]

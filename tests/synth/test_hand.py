@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
+from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.hand import HandLook, decode, encode, mask_box, render_hand
 from lightgesture.synth.poses import TOKENS, token_pose
 from lightgesture.synth.raster import Canvas, Cone
 from lightgesture.synth.skeleton import rotation_y
-from lightgesture.synth.skin import glove_tone, paint_atlas, skin_tone
+from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.surface import Forearm, HandView
 
 FRONT = np.eye(3)

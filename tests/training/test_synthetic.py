@@ -8,7 +8,8 @@ from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
 
 
 def _samples(seed, count=12):
-    return list(synthetic_hands(count, seed, SyntheticSettings(crops=CropSettings(backdrops=1), sources=5), AugmentSettings()))
+    settings = SyntheticSettings(crops=CropSettings(backdrops=1), sources=5)
+    return list(synthetic_hands(count, seed, settings, AugmentSettings()))
 
 
 def test_rendered_hands_hold_all_tokens_and_are_never_originals():

@@ -99,11 +99,10 @@ def render_hand(
     )  # fmt: skip
     cones, landmarks = hand_cones(pose, look.proportions, big, forearm)
     spheres = np.array([[*cone.start, *cone.end] for cone in cones]).reshape(-1, 4)
-    low = np.floor((spheres[:, :2] - spheres[:, 3:]).min(axis=0) / factor) - 2.0
-    high = np.ceil((spheres[:, :2] + spheres[:, 3:]).max(axis=0) / factor) + 2.0
-    size = (high - low).astype(int)
-    cones, landmarks = hand_cones(pose, look.proportions, _moved(big, -low * factor), forearm)
-    canvas = Canvas(int(size[0] * factor), int(size[1] * factor))
+    low = np.floor((spheres[:, :2] - spheres[:, 3:]).min(axis=0) / factor).astype(int) - 2
+    size = np.ceil((spheres[:, :2] + spheres[:, 3:]).max(axis=0) / factor).astype(int) + 2 - low
+    corner = (int(low[0] * factor), int(low[1] * factor))
+    canvas = Canvas(int(size[0] * factor), int(size[1] * factor), corner)
     for cone in cones:
         canvas.draw(cone)
     if forearm.sleeve_mm is not None:
@@ -116,18 +115,13 @@ def render_hand(
     if factor > 1.0:
         target = (int(size[0]), int(size[1]))
         radiance, cover, hand = (_reduced(layer, target) for layer in (radiance, cover, hand))
-    landmarks = landmarks / factor + np.array([low[0], low[1], 0.0])
+    landmarks = landmarks / factor
     origin = (int(low[0]), int(low[1]))
     return HandImage(radiance, cover, hand, origin, mask_box(hand, origin), landmarks)
 
 
 def _reduced(layer: Float32, size: tuple[int, int]) -> Float32:
     return np.asarray(cv2.resize(layer, size, interpolation=cv2.INTER_AREA), np.float32)
-
-
-def _moved(view: HandView, by: FloatArray) -> HandView:
-    wrist = (view.wrist[0] + float(by[0]), view.wrist[1] + float(by[1]))
-    return HandView(view.rotation, wrist, view.px_per_mm, view.distance_mm, view.left)
 
 
 def mask_box(mask: Float32, origin: tuple[int, int] = (0, 0)) -> Box:

@@ -74,24 +74,32 @@ LAYOUT = AtlasLayout()
 
 class Canvas:
     """Buffers of one picture, all (h, w): `height`, unit `normal`, `atlas` coordinates, `palmar` (the part of the
-    normal that points out of the palm, -1..1), float32, and `material`, uint8.
+    normal that points out of the palm, -1..1), float32, and `material`, uint8. `corner`: picture pixel (x, y) of the
+    upper left corner.
     """
 
-    def __init__(self, width: int, height: int) -> None:
-        self.width, self.rows = width, height
+    def __init__(self, width: int, height: int, corner: tuple[int, int] = (0, 0)) -> None:
+        self.width, self.rows, self.corner = width, height, corner
         self.height = np.full((height, width), EMPTY_HEIGHT, np.float32)
         self.normal = np.zeros((3, height, width), np.float32)
         self.atlas = np.zeros((2, height, width), np.float32)
         self.palmar = np.zeros((height, width), np.float32)
         self.material = np.zeros((height, width), np.uint8)
-        self._x = np.arange(width, dtype=np.float32) + np.float32(0.5)
-        self._y = (np.arange(height, dtype=np.float32) + np.float32(0.5))[:, None]
+        self._x = np.arange(width, dtype=np.float32) + np.float32(corner[0] + 0.5)
+        self._y = (np.arange(height, dtype=np.float32) + np.float32(corner[1] + 0.5))[:, None]
 
     def draw(self, cone: Cone) -> None:
         """Unite the visible surface of one cone with what is already there."""
         (ax, ay, _, ar), (bx, by, _, br) = cone.start, cone.end
-        x0, x1 = max(int(min(ax - ar, bx - br)), 0), min(int(max(ax + ar, bx + br)) + 2, self.width)
-        y0, y1 = max(int(min(ay - ar, by - br)), 0), min(int(max(ay + ar, by + br)) + 2, self.rows)
+        left, top = self.corner
+        x0, x1 = (
+            max(int(min(ax - ar, bx - br) - left), 0),
+            min(int(max(ax + ar, bx + br) - left) + 2, self.width),
+        )
+        y0, y1 = (
+            max(int(min(ay - ar, by - br) - top), 0),
+            min(int(max(ay + ar, by + br) - top) + 2, self.rows),
+        )
         if x0 >= x1 or y0 >= y1:
             return
         height, normal = _surface(cone, self._x[x0:x1], self._y[y0:y1])

@@ -50,10 +50,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate, print the tables, write the contact sheets; 0 when all was done."""
-    from lightgesture.benchmarks import accuracy
-    from lightgesture.datasets import find_data
-    from lightgesture.models import ModelError, load_classifier
+    import numpy  # noqa: F401 - only libraries that are loaded can be limited to one thread
+
     from lightgesture.opening import make_folder
+    from lightgesture.threads import one_blas_thread
 
     if args.target != SUITE and (args.only or args.quick):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
@@ -61,8 +61,16 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
-    if args.target == SUITE:
-        return run_suite(args)
+    with one_blas_thread():
+        return run_suite(args) if args.target == SUITE else run_pictures(args)
+
+
+def run_pictures(args: argparse.Namespace) -> int:
+    """Score the models on labelled pictures; 0 when all was done."""
+    from lightgesture.benchmarks import accuracy
+    from lightgesture.datasets import find_data
+    from lightgesture.models import ModelError, load_classifier
+
     data = find_data(args.data)
     available = accuracy.available_targets(data)
     targets = [args.target] if args.target else available

@@ -134,14 +134,12 @@ def _add_head(parts: _Parts, look: BodyLook) -> None:
             parts.add(SKIN, (side * 82, 205, 0), 14, (side * 84, 228, -4), 15)
     parts.add(SKIN, (0, 200, 100), 13, (0, 228, 92), 9)
     if look.mask:
-        for low, high in ((198, 248), (222, 222)):
-            parts.add(
-                MASK, (-38, low if high != 222 else 222, 78), 34, (38, high if high != 222 else 222, 78), 34
-            )
-        parts.add(MASK, (38, 198, 78), 30, (-38, 248, 78), 30)
-        for side in (-1.0, 1.0):
-            parts.add(GLASS, (side * 22, 226, 92), 27, (side * 44, 226, 88), 25)
-        parts.add(MASK, (0, 196, 108), 16, (0, 214, 104), 13)
+        parts.add(MASK, (-40, 226, 64), 38, (40, 226, 64), 38)
+        parts.add(RUBBER, (-38, 227, 74), 32, (38, 227, 74), 32)
+        parts.add(GLASS, (-37, 228, 82), 27, (37, 228, 82), 27)
+        parts.add(MASK, (0, 196, 104), 17, (0, 222, 96), 13)
+        parts.add(RUBBER, (-84, 228, 20), 12, (-60, 228, 60), 12)
+        parts.add(RUBBER, (84, 228, 20), 12, (60, 228, 60), 12)
     else:
         for side in (-1.0, 1.0):
             parts.add(HOOD, (side * 24, 250, 84), 5, (side * 44, 250, 76), 5)

@@ -154,7 +154,8 @@ def diver_look(spec: DiverSpec, rng: np.random.Generator) -> DiverLook:
     ]
     blue, green, red = (float(value) for value in skin.back)
     body = BodyLook(
-        suit_bgr=spec.suit, accent_bgr=spec.accent, skin_bgr=(blue, green, red), hood=spec.hood, mask=spec.mask,
+        suit_bgr=spec.suit, accent_bgr=spec.accent, mask_bgr=spec.accent,
+        skin_bgr=(blue, green, red), hood=spec.hood, mask=spec.mask,
         snorkel=spec.snorkel, regulator=spec.regulator, bare_arms=spec.sleeve_mm is None,
         cuff_mm=BARE_CUFF_MM if spec.sleeve_mm is None else spec.sleeve_mm,
     )  # fmt: skip

@@ -122,7 +122,7 @@ def _uncovered(laid: Sequence[tuple[str, Float, float]]) -> list[PastedHand]:
     for order, (side, alpha, inside) in enumerate(laid):
         free = alpha
         for _, nearer, _ in laid[order + 1 :]:
-            free = free * (1.0 - nearer)
+            free = np.asarray(free * (1.0 - nearer), np.float32)
         share = float(free.sum()) / max(float(alpha.sum()), 1e-6)
         hands.append(PastedHand(side, _outline(free), inside * share))
     return hands

@@ -10,7 +10,6 @@ SEEN = {
     "subhi": "pictures",
     "subhi_26": "person",
     "subhi_46": "person",
-    "drone": "people",
     "funie": "pictures",
     "rov25_reef": "pictures",
     "u45": "pictures",

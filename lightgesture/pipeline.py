@@ -20,6 +20,7 @@ from lightgesture.models import load_classifier
 from lightgesture.reading import ReadingStage, Sighting
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
 from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
+from lightgesture.threads import OneBlasThread
 
 STAGES = ("colour", "regions", "tracks", "classify", "decode")
 
@@ -84,6 +85,7 @@ class Pipeline:
         self._reading = ReadingStage(load_classifier(model))
         self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
         self._clock = StageClock()
+        self._one_thread = OneBlasThread()
         self._index = 0
         self._processed = 0
         self._seconds = 0.0
@@ -96,6 +98,10 @@ class Pipeline:
         the start of the stream. index: position in the source, by default counted.
         """
         index = self._index if index is None else index
+        with self._one_thread.block():
+            return self._process(image_bgr, time_s, index)
+
+    def _process(self, image_bgr: Image, time_s: float, index: int) -> list[Record]:
         upright = self._upright(image_bgr)
         with self._clock.stage("colour"):
             colour = self._colour.process(upright)
@@ -141,6 +147,10 @@ class Pipeline:
 
     def recognize(self, image_bgr: Image) -> FrameRecord:
         """The hands of a single picture, without memory: `frame` and `time_s` are None."""
+        with self._one_thread.block():
+            return self._recognize(image_bgr)
+
+    def _recognize(self, image_bgr: Image) -> FrameRecord:
         upright = self._upright(image_bgr)
         colour = self._colour.process(upright)
         candidates = self._regions.process(colour)

@@ -22,8 +22,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.decoding import decode
     from lightgesture.settings import load_settings
     from lightgesture.sources import expand_inputs
-    from lightgesture.threads import one_blas_thread
 
     settings = load_settings(args)
-    with native_messages_muted(), one_blas_thread():
+    with native_messages_muted():
         return decode(expand_inputs(args.inputs), settings)

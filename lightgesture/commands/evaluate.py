@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy  # noqa: F401 - only libraries that are loaded can be limited to one thread
 
     from lightgesture.opening import make_folder
-    from lightgesture.threads import one_blas_thread
+    from lightgesture.threads import OneBlasThread
 
     if args.target != SUITE and (args.only or args.quick):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
-    with one_blas_thread():
+    with OneBlasThread().block():
         return run_suite(args) if args.target == SUITE else run_pictures(args)
 
 

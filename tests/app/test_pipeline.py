@@ -116,6 +116,28 @@ def test_a_token_is_refused_with_its_reason(row, at_edge, token, reason):
     assert found[1] == pytest.approx(max(row))
 
 
+def test_a_frame_runs_in_one_thread_of_linear_algebra_and_gives_the_others_back(monkeypatch):
+    from threadpoolctl import ThreadpoolController, threadpool_limits
+
+    def counts():
+        return [
+            library.num_threads for library in ThreadpoolController().select(user_api="blas").lib_controllers
+        ]
+
+    pipeline, inside = Pipeline(), []
+    process = pipeline._colour.process
+    monkeypatch.setattr(
+        pipeline._colour, "process", lambda image: (inside.append(counts()), process(image))[1]
+    )
+    with threadpool_limits(2, user_api="blas"):
+        before = counts()
+        pipeline.process(_noise(), 0.0)
+        pipeline.recognize(_noise())
+        assert counts() == before
+    assert all(count == 1 for frame in inside for count in frame)
+    assert len(inside) == 2
+
+
 def test_an_uncertain_side_lowers_the_confidence():
     stage = ReadingStage(FakeClassifier([[1.0, 0.0, 0.0]]))
     (hand,) = stage.process(_noise(), [Sighting("left", ((10, 10, 30, 60),), None, certainty=0.8)])

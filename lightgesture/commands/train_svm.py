@@ -13,7 +13,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     parser.add_argument(
         "--data",
-        required=True,
         metavar="CSV|DIR",
         help="manifest with the columns path and token, and if known a box (x,y,w,h or hx0..hy1), lm, set, side; "
         "or a folder with one folder of hand pictures a class",
@@ -43,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_count,
         default=0,
         metavar="N",
-        help="rendered hands beside the real ones (default: 0)",
+        help="rendered hands beside the real ones, or alone without --data (default: 0)",
     )
     parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
     parser.add_argument(
@@ -71,6 +70,8 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.training.stream import StreamSettings
     from lightgesture.training.svm import SvmTraining, summary, train_to_file
 
+    if args.data is None and not args.synthetic:
+        raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
     out = _model_path(args.out)
     stream, svm = StreamSettings(), SvmSettings()
     if args.copies is not None:
@@ -78,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     if args.centres is not None:
         svm = replace(svm, centres=max(args.centres, 1))
     training = SvmTraining(
-        data=Path(args.data),
+        data=Path(args.data) if args.data else None,
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
         without=tuple(args.without),

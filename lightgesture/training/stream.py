@@ -31,7 +31,7 @@ def stream(
     """All samples, the same for the same seed.
 
     backgrounds: stand behind copies; without any, the hands' own pictures do. scenes: whole pictures with
-    hands. Regions of both are `none` if that is among the hands' classes.
+    hands. Regions of both are `none` if that is among the hands' classes or there are no hands.
     """
     random = np.random.default_rng(seed)
     for hand in hands:
@@ -49,7 +49,7 @@ def stream(
             yield TrainingSample(
                 image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
             )
-    if any(hand.token == NONE for hand in hands):
+    if not hands or any(hand.token == NONE for hand in hands):
         yield from _regions(hands, [*backgrounds, *scenes], settings, random)
 
 

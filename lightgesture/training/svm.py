@@ -24,12 +24,13 @@ from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
 class SvmTraining:
     """What is trained from what.
 
-    data: manifest, or folder with a folder a class. backgrounds: folders of pictures without hands. scenes: table of
-    whole pictures with boxes of hands and faces, or None. without: sources of `data` that are left out.
-    synthetic: number of rendered hands beside the real ones. seed: of everything drawn. The rest: settings.
+    data: manifest, or folder with a folder a class, or None to train on rendered hands alone. backgrounds: folders of
+    pictures without hands. scenes: table of whole pictures with boxes of hands and faces, or None. without: sources of
+    `data` that are left out. synthetic: number of rendered hands beside the real ones. seed: of everything drawn. The
+    rest: settings.
     """
 
-    data: Path
+    data: Path | None
     backgrounds: tuple[Path, ...] = ()
     scenes: Path | None = None
     without: tuple[str, ...] = ()
@@ -47,13 +48,20 @@ def train_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[
     touched before the training is done.
     """
     started = time.monotonic()
-    rows = [row for row in read_rows(training.data) if row.source not in training.without]
+    every_row = [] if training.data is None else read_rows(training.data)
+    rows = [row for row in every_row if row.source not in training.without]
     hands = load_hands(rows, progress)
     negative = training.stream.negative
     backgrounds = [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)]
     scenes = read_scenes(training.scenes, negative) if training.scenes else []
-    present = {row.token for row in rows}
-    rendered = synthetic_hands(training.synthetic, training.seed, training.rendered, training.stream.augment)
+    present = {row.token for row in rows} or set(CLASSES)
+    rendered = synthetic_hands(
+        training.synthetic,
+        training.seed,
+        training.rendered,
+        training.stream.augment,
+        original=not rows,
+    )
     samples = chain(stream(hands, backgrounds, scenes, training.stream, training.seed), rendered)
     model, held_out = train_svm(
         samples,

@@ -24,11 +24,11 @@ class SyntheticSettings:
 
 
 def synthetic_hands(
-    count: int, seed: int, settings: SyntheticSettings, augment: AugmentSettings
+    count: int, seed: int, settings: SyntheticSettings, augment: AugmentSettings, *, original: bool = False
 ) -> Iterator[TrainingSample]:
     """`count` rendered hands of all tokens in turn and some `none`, boxes wrong by as much as those of copies.
 
-    They are never originals: no score counts them.
+    original: whether scores count them, as they must where there are no real hands.
     """
     random = np.random.default_rng(seed)
     maker = CropMaker(seed, "train", settings.crops)
@@ -40,5 +40,5 @@ def synthetic_hands(
             side="left",
             token=crop.token,
             source=f"synthetic {index % settings.sources}",
-            original=False,
+            original=original,
         )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from lightgesture.cli import main
 from lightgesture.synth.crops import CropSettings
 from lightgesture.training.augment import AugmentSettings
 from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
@@ -24,6 +25,18 @@ def test_rendered_hands_hold_all_tokens_and_are_never_originals():
         assert y < rows
         assert x + width > 0
         assert y + height > 0
+
+
+def test_rendered_hands_alone_are_the_originals():
+    settings = SyntheticSettings(crops=CropSettings(backdrops=1))
+    assert all(
+        sample.original for sample in synthetic_hands(3, 1, settings, AugmentSettings(), original=True)
+    )
+
+
+def test_nothing_to_train_on_is_refused_in_one_line(capsys):
+    assert main(["train", "svm"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_the_same_seed_renders_the_same_pixels():

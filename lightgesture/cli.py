@@ -18,7 +18,7 @@ COMMANDS = {
     "decode": "videos and folders of frames to instructions",
     "recognize": "single pictures to hands and their tokens",
     "train": "build a model from labelled pictures",
-    "evaluate": "score the models and the whole chain on labelled pictures",
+    "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
     "synth": "render dives of a synthetic diver with their truth",
 }
 """Name of a command, which is its module in `lightgesture.commands` too, to its line of help."""

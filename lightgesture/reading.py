@@ -21,7 +21,7 @@ class ReadingSettings:
         classifier is not sure.
     """
 
-    token_probability: float = 0.5
+    token_probability: float = 0.7
     edge_share: float = 0.02
 
 

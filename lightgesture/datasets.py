@@ -95,10 +95,11 @@ def read_table(data: Path, name: str) -> list[dict[str, str]]:
 
 
 def grow_box(x0: float, y0: float, x1: float, y1: float, margin: float) -> Box:
-    """Box with corners (x0, y0) and (x1, y1), grown by `margin` of its side on each side, in whole pixels."""
+    """Box with corners (x0, y0) and (x1, y1), grown by `margin` of its side on each side, in
+    whole pixels, at least one."""
     grow_x, grow_y = margin * (x1 - x0), margin * (y1 - y0)
     left, top = round(x0 - grow_x), round(y0 - grow_y)
-    return left, top, round(x1 + grow_x) - left, round(y1 + grow_y) - top
+    return left, top, max(1, round(x1 + grow_x) - left), max(1, round(y1 + grow_y) - top)
 
 
 def read_hands(data: Path, split: str = "val") -> list[Sample]:

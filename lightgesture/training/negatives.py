@@ -19,7 +19,8 @@ from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.proposals import propose
 from lightgesture.features.types import Box, Image
 from lightgesture.models import NONE, TrainingSample
-from lightgesture.training.samples import PICTURE_SUFFIXES, LabelledHand, read_picture
+from lightgesture.sources import is_picture_name, read_picture
+from lightgesture.training.samples import LabelledHand
 
 Random = np.random.Generator
 
@@ -57,7 +58,7 @@ def read_backgrounds(folder: Path, settings: NegativeSettings) -> list[Scene]:
     """All pictures under a folder, without any hand; the source is the folder a picture lies in."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; give --backgrounds a folder of pictures without hands")
-    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() in PICTURE_SUFFIXES)
+    paths = sorted(path for path in folder.rglob("*") if is_picture_name(path))
     if not paths:
         raise InputError(
             f"{folder}: holds no pictures; give --backgrounds a folder of pictures without hands"

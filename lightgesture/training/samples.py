@@ -15,15 +15,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.datasets import LANDMARK_MARGIN, grow_box
 from lightgesture.errors import InputError
 from lightgesture.features.types import Box, Image
 from lightgesture.models import CLASSES
-
-LANDMARK_MARGIN = 0.09
-"""What lies between the box round the 21 landmarks and the hand's outline, as a share of the box's side."""
-
-PICTURE_SUFFIXES = frozenset({".jpg", ".jpeg", ".png", ".bmp", ".webp"})
-"""Files of a class folder that are read as pictures."""
+from lightgesture.sources import is_picture_name, read_picture
 
 KEPT_REACH = 2.2
 """Side of what is kept of a picture over the longer side of the hand's box: enough for any altered copy."""
@@ -60,7 +56,7 @@ class LabelledHand:
 def landmark_box(landmarks: NDArray[np.float32]) -> Box:
     """Outline of the hand from its landmarks (21, 2), pixels."""
     (x0, y0), (x1, y1) = landmarks.min(axis=0).tolist(), landmarks.max(axis=0).tolist()
-    return _outline(x0, y0, x1, y1)
+    return grow_box(x0, y0, x1, y1, LANDMARK_MARGIN)
 
 
 def read_rows(data: Path, classes: Sequence[str] = CLASSES) -> list[HandRow]:
@@ -80,18 +76,6 @@ def read_rows(data: Path, classes: Sequence[str] = CLASSES) -> list[HandRow]:
             f"{data}: holds {sorted(found) or 'no class'}; a classifier needs at least two classes"
         )
     return rows
-
-
-def read_picture(path: Path) -> Image:
-    """Decode a picture to BGR; raises InputError naming the file."""
-    try:
-        content = np.frombuffer(path.read_bytes(), np.uint8)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); restore it or drop its row") from error
-    image = cv2.imdecode(content, cv2.IMREAD_COLOR) if content.size else None
-    if image is None:
-        raise InputError(f"{path}: is no picture that OpenCV reads; restore it or drop its row")
-    return np.asarray(image, np.uint8)
 
 
 def load_hand(row: HandRow) -> LabelledHand:
@@ -120,13 +104,6 @@ def load_hand(row: HandRow) -> LabelledHand:
     return LabelledHand(kept, box, row.side, row.token, row.source, landmarks)
 
 
-def _outline(x0: float, y0: float, x1: float, y1: float) -> Box:
-    """Landmark box with these corners grown to the outline, whole pixels."""
-    grow_x, grow_y = LANDMARK_MARGIN * (x1 - x0), LANDMARK_MARGIN * (y1 - y0)
-    left, top = round(x0 - grow_x), round(y0 - grow_y)
-    return left, top, max(1, round(x1 + grow_x) - left), max(1, round(y1 + grow_y) - top)
-
-
 def _folder_rows(folder: Path, classes: Sequence[str]) -> list[HandRow]:
     names = sorted(entry.name for entry in folder.iterdir() if entry.is_dir())
     unknown = [name for name in names if name not in classes]
@@ -136,7 +113,7 @@ def _folder_rows(folder: Path, classes: Sequence[str]) -> list[HandRow]:
         HandRow(path, name, source=f"{folder.name}/{path.parent.relative_to(folder / name)}")
         for name in names
         for path in sorted((folder / name).rglob("*"))
-        if path.suffix.lower() in PICTURE_SUFFIXES
+        if is_picture_name(path)
     ]
 
 
@@ -191,7 +168,7 @@ def _box(place: str, row: dict[str, str]) -> Box | None:
     elif row.get("hx0"):
         names = ("hx0", "hy0", "hx1", "hy1")
         x0, y0, x1, y1 = _numbers(place, ", ".join(names), [row.get(name) or "" for name in names], 4)
-        box = _outline(x0, y0, x1, y1) if x1 > x0 and y1 > y0 else (0, 0, 0, 0)
+        box = grow_box(x0, y0, x1, y1, LANDMARK_MARGIN) if x1 > x0 and y1 > y0 else (0, 0, 0, 0)
     else:
         return None
     if box[2] <= 0 or box[3] <= 0:

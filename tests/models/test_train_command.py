@@ -6,7 +6,7 @@ import pytest
 
 from lightgesture.cli import main
 from lightgesture.models import load_classifier
-from lightgesture.training.samples import read_picture
+from lightgesture.sources import read_picture
 
 
 def train(folder: Path, out: Path, *more: str) -> int:

@@ -135,5 +135,7 @@ def load_scene_spec(path: str | Path) -> SceneSpec:
         raise ValueError(f"{path}: not valid TOML: {error}; mend that line") from None
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        raise ValueError(f"{path}: {place}: {first['msg'].lower()}; see lightgesture.synth.spec") from None
+        place, message = ".".join(str(part) for part in first["loc"]), first["msg"]
+        raise ValueError(
+            f"{path}: {place}: {message[0].lower()}{message[1:]}; see lightgesture.synth.spec"
+        ) from None

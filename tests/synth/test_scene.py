@@ -198,3 +198,10 @@ def test_waving_moves_the_open_hand_to_and_fro():
     across = [performance.state(f, f / 30.0)[0].right.wrist[0] for f in range(wave.start, wave.end)]
     assert np.ptp(across) > 100.0
     assert tokens_at(timeline, moment_at(timeline, wave.start)) == (None, "5")
+
+
+def test_a_wrong_water_names_the_waters_as_they_are_written(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text('[water]\nkind = "XX"\n', encoding="utf-8")
+    with pytest.raises(ValueError, match=r"scene\.toml: water\.kind: input should be 'I', 'IA'"):
+        load_scene_spec(path)

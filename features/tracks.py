@@ -105,6 +105,7 @@ class TrackStage:
     ) -> None:
         self.settings = settings or TrackSettings()
         self._selection = selection or SelectorSettings()
+        self._next = 1
         self.reset()
 
     def reset(self) -> None:
@@ -113,7 +114,6 @@ class TrackStage:
         self._single: tuple[Box, int] | None = None
         self._time_s: float | None = None
         self._size: tuple[int, int] | None = None
-        self._next = getattr(self, "_next", 1)
 
     def process(self, candidates: Candidates, time_s: float) -> tuple[Track, ...]:
         """Follow the hands into the next frame at `time_s` seconds. Time that stands still or runs back is

@@ -12,7 +12,7 @@ from lightgesture.models.train_svm import HeldOut
 from lightgesture.training.samples import HandRow
 
 LIMITS = (
-    "Trained on bare hands in air; water and darkness are simulated. Gloves were never seen.",
+    "Trained on bare hands in air; water and darkness are simulated. Gloves were seen on a few rendered hands only.",
     "Hands seen obliquely, half closed, or with the fingers together are rarer in the data than in life.",
     "A region that is no hand can still be read as a token: ask for several equal frames before acting.",
     "Pictures of real people, most published without a stated licence: check before you publish a product.",

@@ -1,7 +1,6 @@
 """The pictures from which the selector learns, read from a data folder, and its training from end to end."""
 
 import json
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from lightgesture.datasets import (
 from lightgesture.features.selector_file import Selector, save_selector
 from lightgesture.features.training import BoxedPicture, fit_pairs, fit_regions
 from lightgesture.features.types import Image
+from lightgesture.results.atomic import replacing
 from lightgesture.sources import read_picture
 from lightgesture.training.composites import Composer, attenuate, expose
 from lightgesture.training.cutouts import Cutout, cut_out
@@ -193,6 +193,5 @@ def _write_card(
         "seconds": round(seconds),
         "versions": {"numpy": np.__version__, "opencv": cv2.__version__, "scikit-learn": sklearn.__version__},
     }
-    temporary = out.with_suffix(".json.part")
-    temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")
-    os.replace(temporary, out.with_suffix(".json"))
+    with replacing(out.with_suffix(".json")) as temporary:
+        temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

@@ -2,7 +2,10 @@
 
 import argparse
 import importlib
+from pathlib import Path
 from typing import Protocol, cast
+
+from lightgesture.errors import UsageError
 
 TARGETS = {
     "svm": ("lightgesture.commands.train_svm", "the classifier of hand patches, quick to train"),
@@ -35,3 +38,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Train the chosen model; 0 when its files are written."""
     return int(args.run_target(args))
+
+
+def model_path(text: str) -> Path:
+    """The file to write, refused before hours are spent rather than after."""
+    path = Path(text)
+    if path.suffix != ".npz":
+        raise UsageError(f"{text}: a model file ends in .npz; give another name with --out")
+    if not path.parent.is_dir():
+        raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
+    return path

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from lightgesture.commands.train import model_path
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
 
@@ -26,9 +27,7 @@ def run(args: argparse.Namespace) -> int:
     """Train and write the selector and its card."""
     from lightgesture.training.regions import train_regions
 
-    out = Path(args.out)
-    if out.suffix != ".npz":
-        raise UsageError(f"{out}: a selector file ends in .npz; give another name with --out")
+    out = model_path(args.out)
     if args.seed < 0:
         raise UsageError(f"--seed is {args.seed}; it must be 0 or more")
     train_regions(Path(args.data), out, args.seed, progress=(lambda _: None) if args.quiet else say)

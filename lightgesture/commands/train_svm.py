@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from lightgesture.commands.train import model_path
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
 
@@ -72,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.data is None and not args.synthetic:
         raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
-    out = _model_path(args.out)
+    out = model_path(args.out)
     stream, svm = StreamSettings(), SvmSettings()
     if args.copies is not None:
         stream = replace(stream, copies=args.copies)
@@ -128,16 +129,6 @@ class StepBars:
     def _close(self) -> None:
         if self._bar is not None:
             self._bar.close()
-
-
-def _model_path(text: str) -> Path:
-    """The file to write, refused before hours are spent rather than after."""
-    path = Path(text)
-    if path.suffix != ".npz":
-        raise UsageError(f"{text}: a model file ends in .npz; give another name with --out")
-    if not path.parent.is_dir():
-        raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
-    return path
 
 
 def _count(text: str) -> int:

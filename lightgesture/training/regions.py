@@ -157,7 +157,6 @@ def train_regions(
     singles = [picture for picture in frames if len(picture.boxes) > 1]
     composed = _composed(composer, settings.pair_composites, seed + 3)
     pairs = fit_pairs((picture for part in (singles, empty, composed) for picture in part), regions, seed)
-    out.parent.mkdir(parents=True, exist_ok=True)
     save_selector(out, Selector(regions, pairs))
     _write_card(out, seed, settings, frames, hands, empty, time.monotonic() - started)
 

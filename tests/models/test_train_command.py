@@ -96,3 +96,9 @@ def test_a_picture_that_cannot_be_decoded_stops_the_training(folder: Path, tmp_p
     (folder / "1" / "broken.png").write_bytes(np.arange(50, dtype=np.uint8).tobytes())
     assert train(folder, tmp_path / "mine.npz") == 1
     assert not (tmp_path / "mine.npz").exists()
+
+
+@pytest.mark.parametrize("out", ["selector.bin", "no/such/folder/selector.npz"])
+def test_a_selector_that_could_not_be_written_is_refused_before_the_training(out, tmp_path, capsys):
+    assert main(["train", "regions", "--data", str(tmp_path), "--out", str(tmp_path / out)]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

@@ -8,13 +8,7 @@ import pytest
 
 from lightgesture.features import find_hands
 from lightgesture.features.cells import describe
-from lightgesture.features.colour import (
-    ColourSettings,
-    ColourStage,
-    compensate_red,
-    gray_world,
-    reduce_picture,
-)
+from lightgesture.features.colour import ColourSettings, ColourStage, reduce_picture
 from lightgesture.features.geometry import mirror_box, pairwise_iou, scale_box
 from lightgesture.features.proposals import propose
 from lightgesture.features.selector import RegionStage, SelectorSettings, choose
@@ -35,21 +29,6 @@ def test_reduced_pictures_have_the_working_area_whatever_the_size():
         small = reduce_picture(np.zeros((*shape, 3), np.uint8), 19200)
         assert small.shape[0] * small.shape[1] == pytest.approx(19200, rel=0.03)
     assert reduce_picture(np.zeros((1, 1, 3), np.uint8), 19200).shape == (1, 1, 3)
-
-
-def test_red_is_given_back_only_where_green_leads():
-    image = np.full((4, 4, 3), (0.5, 0.6, 0.2), np.float32)
-    expected = 0.2 + (0.6 - 0.2) * (1 - 0.2) * 0.6
-    assert compensate_red(image, 1.0)[0, 0, 2] == pytest.approx(expected)
-    reddish = np.full((4, 4, 3), (0.2, 0.3, 0.6), np.float32)
-    np.testing.assert_array_equal(compensate_red(reddish, 1.0), reddish)
-
-
-def test_gray_world_makes_the_means_equal():
-    rng = np.random.default_rng(0)
-    image = rng.uniform(0.1, 0.4, (30, 40, 3)).astype(np.float32) * np.array([1.0, 0.8, 0.4], np.float32)
-    means = gray_world(image).reshape(-1, 3).mean(axis=0)
-    np.testing.assert_allclose(means, means.mean(), rtol=0.01)
 
 
 @pytest.mark.parametrize("cast", [(1, 1, 1), (1.0, 0.9, 0.35), (0.6, 1.0, 0.4), (0.25, 0.25, 0.25)])

@@ -1,0 +1,109 @@
+"""The fast skin map against its written-out reference."""
+
+import time
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightgesture.datasets import find_data, read_webcam
+from lightgesture.errors import InputError
+from lightgesture.features.colour import ColourSettings, reduce_picture
+from lightgesture.features.skin_map import (
+    SkinMapSettings,
+    histogram_percentiles,
+    redness,
+    reference_skin_map,
+    skin_map,
+    stretch,
+)
+
+SETTINGS = SkinMapSettings()
+
+
+def _largest_difference(picture):
+    slow, fast = reference_skin_map(picture, SETTINGS), skin_map(picture, SETTINGS)
+    return int(np.abs(slow.astype(int) - fast).max())
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    size=st.tuples(st.integers(1, 80), st.integers(1, 80)),
+    light=st.tuples(*[st.floats(0.02, 1.0)] * 3),
+    grain=st.integers(0, 60),
+)
+@settings(max_examples=60, deadline=None)
+def test_fast_and_written_out_agree_on_any_light(seed, size, light, grain):
+    rng = np.random.default_rng(seed)
+    coarse = rng.integers(0, 256, (4, 4, 3)).astype(np.float32)
+    picture = cv2.resize(coarse, (size[1] * 2, size[0] * 2)) * np.array(light, np.float32)
+    picture = np.clip(picture + rng.normal(0, 1 + grain, picture.shape), 0, 255).astype(np.uint8)
+    assert _largest_difference(picture) <= 2
+
+
+@pytest.mark.parametrize("value", [0, 1, 128, 255])
+def test_a_constant_picture_gives_zeros_in_both(value):
+    picture = np.full((120, 160, 3), value, np.uint8)
+    assert not reference_skin_map(picture, SETTINGS).any()
+    assert not skin_map(picture, SETTINGS).any()
+
+
+@pytest.mark.parametrize("channel", [0, 1, 2])
+def test_a_picture_of_one_channel_does_not_divide_by_its_dark_ones(channel):
+    picture = np.zeros((120, 160, 3), np.uint8)
+    picture[..., channel] = np.random.default_rng(1).integers(0, 256, (120, 160))
+    assert _largest_difference(picture) <= 2
+
+
+def test_fast_and_written_out_agree_on_real_frames():
+    try:
+        samples = read_webcam(find_data(), "val")
+    except InputError:
+        pytest.skip("needs the optional data folder ../shared/data")
+    for sample in samples:
+        picture = reduce_picture(cv2.imread(str(sample.path)), ColourSettings().working_pixels)
+        assert _largest_difference(picture) <= 2, sample.path.name
+
+
+def test_the_fast_map_is_fast():
+    picture = np.random.default_rng(0).integers(0, 256, (120, 160, 3), np.uint8)
+    times = []
+    for run in (reference_skin_map, skin_map):
+        run(picture, SETTINGS)
+        best = float("inf")
+        for _ in range(20):
+            start = time.perf_counter()
+            run(picture, SETTINGS)
+            best = min(best, time.perf_counter() - start)
+        times.append(best)
+    assert times[1] < times[0] / 1.5
+
+
+@pytest.mark.parametrize("percents", [(20.0, 99.8), (0.0, 100.0), (50.0, 90.0)])
+def test_percentiles_from_a_histogram_are_exact_to_a_bin(percents):
+    values = np.random.default_rng(2).normal(0, 1, (120, 160)).astype(np.float32)
+    found = histogram_percentiles(values, percents, 2048)
+    width = float(values.max() - values.min()) / 2048
+    np.testing.assert_allclose(found, np.percentile(values, percents), atol=width)
+
+
+def test_percentiles_of_a_constant_are_that_constant():
+    assert histogram_percentiles(np.full((3, 4), 0.25, np.float32), (20.0, 99.8), 256) == (0.25, 0.25)
+
+
+def test_skin_is_redder_than_grey_and_grey_than_water():
+    colours = np.array([[[110, 140, 200], [128, 128, 128], [150, 120, 40]]], np.float32) / 255
+    skin, grey, water = redness(colours, 0.73, 0.15)[0]
+    assert skin > grey + 0.05
+    assert water < grey - 0.05
+    assert abs(grey) < 1e-6
+
+
+def test_stretching_spans_the_percentiles():
+    values = np.linspace(-1, 1, 1001, dtype=np.float32).reshape(7, 143)
+    levels = stretch(values, 20.0, 80.0)
+    assert levels.min() == 0
+    assert levels.max() == 255
+    assert int((levels == 0).sum()) == pytest.approx(200, abs=4)

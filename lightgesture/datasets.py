@@ -52,7 +52,7 @@ class Sample:
 
     source: the person, room and camera it comes from. group: the row of a table it belongs to.
     order: place in an ordered sequence, None for a single picture. complete: every visible hand is labelled.
-    doubtful: a trained net disagrees strongly with the label.
+    doubtful: a trained net disagrees strongly with the label. faces: boxes of the faces, where they are known.
     """
 
     path: Path
@@ -62,6 +62,7 @@ class Sample:
     order: int | None = None
     complete: bool = False
     doubtful: bool = False
+    faces: tuple[Box, ...] = ()
 
 
 def find_data(folder: str | Path | None = None) -> Path:
@@ -134,9 +135,16 @@ def read_webcam(data: Path, split: str = "val") -> list[Sample]:
             labels=tuple(_box_label(row, None) for row in hands),
             source=hands[0]["set"],
             group=f"webcam {split}",
+            faces=_face_boxes(hands[0]["face_boxes"]),
         )
         for file, hands in _by_file(rows)
     ]
+
+
+def _face_boxes(listed: str) -> tuple[Box, ...]:
+    """Boxes written as `x,y,w,h` and joined by `;`."""
+    rows = [[round(float(number)) for number in item.split(",")] for item in listed.split(";") if item]
+    return tuple((x, y, width, height) for x, y, width, height in rows)
 
 
 def read_frames(data: Path) -> list[Sample]:

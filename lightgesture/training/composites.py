@@ -42,12 +42,24 @@ class CompositeSettings:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Background:
+    """image: uint8 (h, w, 3) BGR, without a hand. source: the person, room and camera it comes from."""
+
+    image: Image
+    source: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Composite:
-    """image: uint8 (h, w, 3) BGR. boxes: outlines of the hands. tokens: one for each box."""
+    """image: uint8 (h, w, 3) BGR. boxes: outlines of the hands. tokens: one for each box. faces: boxes of heads that
+    face the camera, also where a hand covers them; those of a background are not known. sources: whose pictures
+    the hands and the background are, so that they can be held out."""
 
     image: Image
     boxes: tuple[Box, ...]
     tokens: tuple[str, ...]
+    faces: tuple[Box, ...]
+    sources: frozenset[str]
 
 
 def _paste(
@@ -103,11 +115,11 @@ class Composer:
     def __init__(
         self,
         cutouts: Sequence[Cutout],
-        waters: Sequence[Image],
-        rooms: Sequence[Image],
+        waters: Sequence[Background],
+        rooms: Sequence[Background],
         settings: CompositeSettings | None = None,
     ) -> None:
-        """cutouts: at least one. waters, rooms: backgrounds, BGR; either may be empty, not both."""
+        """cutouts: at least one. waters, rooms: backgrounds; either may be empty, not both."""
         self._by_source: dict[str, list[Cutout]] = {}
         for cutout in cutouts:
             self._by_source.setdefault(cutout.source, []).append(cutout)
@@ -116,8 +128,13 @@ class Composer:
         self._rooms = list(rooms) or list(waters)
         self._settings = settings or CompositeSettings()
 
-    def _background(self, pictures: Sequence[Image], rng: np.random.Generator) -> Float:
-        picture = pictures[int(rng.integers(len(pictures)))]
+    def _background(
+        self, pictures: Sequence[Background], rng: np.random.Generator, sources: set[str]
+    ) -> Float:
+        """Part of one of the pictures at the composite's size, values 0 to 1; its source is added to `sources`."""
+        background = pictures[int(rng.integers(len(pictures)))]
+        sources.add(background.source)
+        picture = background.image
         height, width = picture.shape[:2]
         share = rng.uniform(0.5, 1.0)
         wide, tall = max(2, int(width * share)), max(2, int(height * share))
@@ -129,12 +146,14 @@ class Composer:
             part = part[:, ::-1]
         return np.asarray(part, np.float32) / np.float32(255.0)
 
-    def _put_decoys(self, canvas: Float, unit: float, rng: np.random.Generator) -> None:
+    def _put_decoys(
+        self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]
+    ) -> None:
         """Objects about as large as hands: pieces of other pictures with a hard edge and a colour of their own."""
         width, height = self._settings.size
         count = rng.integers(1, self._settings.decoys + 1) if rng.random() < 0.5 else 0
         for _ in range(count):
-            texture = self._background(self._rooms, rng)
+            texture = self._background(self._rooms, rng, sources)
             radius = unit * rng.uniform(0.2, 0.8)
             centre = rng.uniform(0, width), rng.uniform(0, height)
             angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 12)))
@@ -168,8 +187,8 @@ class Composer:
         wrists: Sequence[tuple[float, float]],
         skin: Float,
         rng: np.random.Generator,
-    ) -> None:
-        """Torso, head and arms in hand heights (`unit`, pixels), wrists already known."""
+    ) -> Box:
+        """Torso, head and arms in hand heights (`unit`, pixels), wrists already known; the box of the head."""
         suit = rng.uniform(0.0, 0.25, 3) if rng.random() < 0.7 else rng.uniform(0.1, 0.9, 3)
         cloth, flesh = suit.tolist(), (skin * rng.uniform(0.75, 1.1)).tolist()
         half = unit * rng.uniform(0.9, 1.3)
@@ -205,18 +224,20 @@ class Composer:
             cv2.line(canvas, joint, elbow, cloth, max(1, round(0.55 * unit)), cv2.LINE_AA)
             colour = flesh if bare else cloth
             cv2.line(canvas, elbow, at(*wrist), colour, max(1, round(0.36 * unit)), cv2.LINE_AA)
+        return head[0] - axes[0], head[1] - axes[1], 2 * axes[0], 2 * axes[1]
 
     def compose(self, rng: np.random.Generator) -> Composite:
         """One picture; the same state of `rng` gives the same pixels on one machine and version."""
         settings = self._settings
         draw = rng.random()
         wet, dark = draw < settings.water, draw > 1.0 - settings.dark
-        canvas = self._background(self._waters if wet else self._rooms, rng)
+        sources: set[str] = set()
+        canvas = self._background(self._waters if wet else self._rooms, rng, sources)
         if not wet and rng.random() < 0.3:
             canvas = np.asarray(cv2.GaussianBlur(canvas, (0, 0), rng.uniform(0.5, 4.0)), np.float32)
         width, height = settings.size
         unit = float(height * np.exp(rng.uniform(*np.log(settings.hand_height))))
-        self._put_decoys(canvas, unit, rng)
+        self._put_decoys(canvas, unit, rng, sources)
         axis = rng.uniform(0.3, 0.7) * width
         shoulder = rng.uniform(0.3, 0.85) * height
         hands = self._hands(rng)
@@ -233,7 +254,7 @@ class Composer:
         wrists = [(x, y + 0.35 * unit) for _, (x, y) in chosen]
         opaque = hands[0].alpha > 0.9
         skin = hands[0].image[opaque].mean(axis=0).astype(np.float32) / 255.0
-        self._draw_body(person, axis, shoulder, unit, wrists, skin, rng)
+        face = self._draw_body(person, axis, shoulder, unit, wrists, skin, rng)
         boxes, tokens = [], []
         for hand, place in chosen:
             box = _paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))
@@ -244,7 +265,8 @@ class Composer:
             person = self._submerge(person, canvas, rng)
         elif dark:
             person = self._darken(person, canvas, rng)
-        return Composite(expose(person, rng), tuple(boxes), tuple(tokens))
+        sources |= {hand.source for hand in hands}
+        return Composite(expose(person, rng), tuple(boxes), tuple(tokens), (face,), frozenset(sources))
 
     @staticmethod
     def _submerge(person: Float, background: Float, rng: np.random.Generator) -> Float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lightgesture.features.types import Image
+from lightgesture.features.types import Box, Image
 from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
 from lightgesture.synth.camera import CameraLook, Sensor
 from lightgesture.synth.diver import ArmState, DiverState, rotation_matrix
@@ -15,7 +15,7 @@ from lightgesture.synth.skeleton import HandPose
 from lightgesture.synth.specks import Bubbles, mirror_in_surface
 from lightgesture.synth.variety import ACCENTS, SUITS
 from lightgesture.synth.water import Water
-from lightgesture.training.composites import Composer, Composite, CompositeSettings
+from lightgesture.training.composites import Background, Composer, Composite, CompositeSettings
 from lightgesture.training.cutouts import Cutout
 from lightgesture.training.real_hands import Shown, draw_diver, skin_colour
 from lightgesture.training.surroundings import (
@@ -31,6 +31,10 @@ NO_POSE = HandPose(np.zeros((5, 4)), np.zeros(2))
 """The fingers are those of a photograph."""
 SIDES = ("right", "left")
 THUMB_TOKENS = ("left", "right")
+HEAD_MM = (0.0, 215.0, 20.0)
+"""Middle of the head in the body frame of `synth.body`, chin to crown."""
+HEAD_HALF_MM = (92.0, 125.0)
+"""Half its width and height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +74,8 @@ class DiverComposer(Composer):
     def __init__(
         self,
         cutouts: Sequence[Cutout],
-        waters: Sequence[Image],
-        rooms: Sequence[Image],
+        waters: Sequence[Background],
+        rooms: Sequence[Background],
         settings: CompositeSettings | None = None,
         diver: DiverSettings | None = None,
         seed: int = 0,
@@ -90,8 +94,10 @@ class DiverComposer(Composer):
         is_wet, is_dark = draw < self._settings.water, draw > 1.0 - self._settings.dark
         camera = Camera(float(rng.uniform(0.75, 1.1)) * width, (0.5 * width, 0.5 * height))
         state = self._state(camera, rng)
-        scenery = self._scenery(is_wet, is_dark, float(state.position[2]) / 1000.0, rng)
+        sources: set[str] = set()
+        scenery = self._scenery(is_wet, is_dark, float(state.position[2]) / 1000.0, rng, sources)
         hands = self._pair(rng)
+        sources |= {hand.source for hand in hands.values()}
         look = body_look(hands["left"], is_wet, self._settings.bare_arms, rng)
         if rng.random() < self._settings.single:
             del hands[SIDES[int(rng.integers(2))]]
@@ -105,6 +111,8 @@ class DiverComposer(Composer):
             photograph(picture, rng),
             tuple(hand.box for hand in kept),
             tuple(hands[hand.side].token for hand in kept),
+            (head_box(state, camera),),
+            frozenset(sources),
         )
 
     def _add_water_effects(
@@ -127,13 +135,15 @@ class DiverComposer(Composer):
             mouth = to_camera(np.array([MOUTH]), rotation_matrix(state.rotation), state.position)[0]
             bubbles.draw(picture, time_s, mouth, water)
 
-    def _scenery(self, is_wet: bool, is_dark: bool, distance_m: float, rng: np.random.Generator) -> Scenery:
+    def _scenery(
+        self, is_wet: bool, is_dark: bool, distance_m: float, rng: np.random.Generator, sources: set[str]
+    ) -> Scenery:
         """Where the diver is: rendered or a real picture, some with things that stand about."""
         if rng.random() < self._diver.rendered:
             scenery = self._surroundings.dive(rng) if is_wet else self._surroundings.room(rng)
         else:
-            coded = self._background(self._waters if is_wet else self._rooms, rng)
-            self._put_decoys(coded, float(rng.uniform(15.0, 60.0)), rng)
+            coded = self._background(self._waters if is_wet else self._rooms, rng, sources)
+            self._put_decoys(coded, float(rng.uniform(15.0, 60.0)), rng, sources)
             picture = np.asarray(np.power(coded, np.float32(2.2)), np.float32)
             if is_wet:
                 water = water_of_picture(picture, distance_m, rng)
@@ -177,6 +187,15 @@ class DiverComposer(Composer):
         y = rng.uniform(-0.2, 0.3) * height * depth / camera.focal - base[1] - 0.4 * HAND_LENGTH_MM
         position = np.array([x, y, depth + base[2]])
         return DiverState(position, rng.normal(0.0, diver.body_deg), arms[0], arms[1])
+
+
+def head_box(state: DiverState, camera: Camera) -> Box:
+    """Where the diver's head is in the picture, also where something covers it, pixels."""
+    place = to_camera(np.array([HEAD_MM]), rotation_matrix(state.rotation), state.position)
+    (centre,), (px_per_mm,) = camera.project(place)
+    half_width, half_height = (half * float(px_per_mm) for half in HEAD_HALF_MM)
+    left, top = round(float(centre[0]) - half_width), round(float(centre[1]) - half_height)
+    return left, top, round(2 * half_width), round(2 * half_height)
 
 
 def body_look(hand: Cutout, is_wet: bool, bare_arms: float, rng: np.random.Generator) -> BodyLook:

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.composites import Composer, CompositeSettings, attenuate
+from lightgesture.training.composites import Background, Composer, CompositeSettings, attenuate
 from lightgesture.training.cutouts import cut_out, draw_hand
 
 
@@ -26,9 +26,9 @@ def _cutout():
     return found
 
 
-def _pictures(count, value):
+def _backgrounds(count, value, source):
     rng = np.random.default_rng(value)
-    return [rng.integers(0, value, (240, 320, 3), np.uint8) for _ in range(count)]
+    return [Background(rng.integers(0, value, (240, 320, 3), np.uint8), source) for _ in range(count)]
 
 
 def test_a_cutout_holds_the_hand_and_nothing_else(cutout):
@@ -49,7 +49,7 @@ def test_mirroring_swaps_left_and_right_and_keeps_the_box_on_the_hand(cutout):
 
 
 def test_the_same_seed_composes_the_same_pixels(cutout):
-    composer = Composer([cutout], _pictures(2, 90), _pictures(2, 200))
+    composer = Composer([cutout], _backgrounds(2, 90, "sea"), _backgrounds(2, 200, "room"))
     first, second = (composer.compose(np.random.default_rng(4)) for _ in range(2))
     np.testing.assert_array_equal(first.image, second.image)
     assert first.boxes == second.boxes
@@ -57,7 +57,7 @@ def test_the_same_seed_composes_the_same_pixels(cutout):
 
 def test_composed_pictures_box_their_hands(cutout):
     settings = CompositeSettings(dark=0.0, water=0.0, single=0.0)
-    composer = Composer([cutout], [], _pictures(2, 60), settings)
+    composer = Composer([cutout], [], _backgrounds(2, 60, "room"), settings)
     rng = np.random.default_rng(9)
     composites = [composer.compose(rng) for _ in range(10)]
     for composite in composites:

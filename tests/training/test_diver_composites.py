@@ -10,7 +10,7 @@ from lightgesture.synth.body import BodyLook, Camera
 from lightgesture.synth.diver import ArmState, DiverState
 from lightgesture.synth.shading import Light
 from lightgesture.synth.water import make_water
-from lightgesture.training.composites import CompositeSettings
+from lightgesture.training.composites import Background, CompositeSettings
 from lightgesture.training.cutouts import Cutout
 from lightgesture.training.diver_composites import NO_POSE, DiverComposer, DiverSettings
 from lightgesture.training.real_hands import Shown, draw_diver, skin_colour
@@ -98,8 +98,8 @@ def test_skin_colour_is_linear_and_ignores_what_is_cut_away():
 @pytest.fixture(name="composer", scope="module")
 def _composer():
     rng = np.random.default_rng(0)
-    waters = [np.full((90, 120, 3), (150, 110, 40), np.uint8)]
-    rooms = [rng.integers(0, 255, (90, 120, 3), np.uint8)]
+    waters = [Background(np.full((90, 120, 3), (150, 110, 40), np.uint8), "sea")]
+    rooms = [Background(rng.integers(0, 255, (90, 120, 3), np.uint8), "room")]
     hands = [drawn_cutout(token, source=source) for source in "ab" for token in ("left", "0")]
     settings = CompositeSettings(size=SIZE, single=0.2)
     return DiverComposer(hands, waters, rooms, settings, DiverSettings(drawn=0.2))

@@ -8,6 +8,7 @@ beside the labels is not counted as wrong.
 """
 
 import csv
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -190,6 +191,12 @@ def group_samples(samples: Iterable[Sample]) -> dict[str, list[Sample]]:
     for sample in samples:
         groups.setdefault(sample.group, []).append(sample)
     return groups
+
+
+def fold_of(source: str, folds: int) -> int:
+    """Number of the fold, 0 to `folds` - 1, in which a source is held out: by a hash of its name, so that it stays
+    there when other sources come or go."""
+    return int(hashlib.sha256(source.encode()).hexdigest(), 16) % folds
 
 
 def is_sequence(samples: Sequence[Sample]) -> bool:

@@ -17,7 +17,7 @@ from lightgesture.benchmarks.hands import (
     confusion_table,
     summary_table,
 )
-from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, PipelineMethod
+from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, product
 from lightgesture.benchmarks.region_tables import (
     instructions_table,
     negatives_table,
@@ -68,7 +68,7 @@ def evaluate_hands(classifier: Classifier, model: str, data: Path, progress: Pro
         ("hands val", answers),
         ("hands val, none doubtful", [answer for answer in answers if not answer.sample.doubtful]),
     ]
-    for group, members in group_samples(_frame_samples(data)).items():
+    for group, members in group_samples(frame_samples(data)).items():
         parts.append(
             (f"{group}, boxes given", classify(classifier, progress(members, f"{group}, boxes given")))
         )
@@ -78,13 +78,13 @@ def evaluate_hands(classifier: Classifier, model: str, data: Path, progress: Pro
         by_source_table(answers, model),
         confusion_table(answers, model),
     )
-    failures = {_sheet_name(part): _hand_failures(part_answers) for part, part_answers in parts}
+    failures = {sheet_name(part): _hand_failures(part_answers) for part, part_answers in parts}
     return Report(tables, failures)
 
 
 def evaluate_regions(methods: Sequence[Method], data: Path, progress: Progress) -> Report:
     """Every method on the whole frames of the folder, and on those without a gesturing diver."""
-    positives = run_methods(methods, _frame_samples(data), progress)
+    positives = run_methods(methods, frame_samples(data), progress)
     has_negatives = (data / "negatives").is_dir()
     negatives = run_methods(methods, read_negatives(data), progress) if has_negatives else []
     tables = [
@@ -94,7 +94,7 @@ def evaluate_regions(methods: Sequence[Method], data: Path, progress: Progress) 
         negatives_table(negatives),
     ]
     runs = [*positives, *negatives]
-    failures = {_sheet_name(run.method, run.group, run.mode): _run_failures(run) for run in runs}
+    failures = {sheet_name(run.method, run.group, run.mode): _run_failures(run) for run in runs}
     return Report(tuple(table for table in tables if table.rows), failures)
 
 
@@ -106,28 +106,31 @@ def available_targets(data: Path) -> list[str]:
 
 def default_methods(classifier: Classifier, model: str, data: Path | None) -> list[Method]:
     """The pipeline; and, where the pictures for its bank are there, the paper's chain named in both ways."""
-    pipeline = PipelineMethod(model)
+    pipeline = product(model)
     if data is None or not (data / "hands" / "train.csv").is_file():
         return [pipeline]
     bank = build_bank(data)
     return [pipeline, PaperMethod(bank), PaperMethod(bank, classifier)]
 
 
-def save_failures(report: Report, folder: Path, warn: Callable[[str], None]) -> list[Path]:
-    """Draw a contact sheet per list of failures; returns the files written."""
+def save_failures(
+    report: Report, folder: Path, warn: Callable[[str], None], suffix: str = ".jpg"
+) -> list[Path]:
+    """Draw a contact sheet per list of failures; returns the files written. suffix: .jpg, or .png for exact pixels."""
     written = []
     for name, failures in report.failures.items():
         chosen = choose_evenly(len(failures))
         if len(chosen) < len(failures):
             warn(f"{name}: shows {len(chosen)} of {len(failures)} failures")
         if chosen:
-            path = folder / f"{name}.jpg"
+            path = folder / f"{name}{suffix}"
             save_sheet(path, [_tile(failures[index]) for index in chosen])
             written.append(path)
     return written
 
 
-def _frame_samples(data: Path) -> list[Sample]:
+def frame_samples(data: Path) -> list[Sample]:
+    """The whole frames with labelled hands that a data folder holds, those that selectors are trained on left aside."""
     samples: list[Sample] = []
     if (data / "webcam").is_dir():
         samples += read_webcam(data)
@@ -161,7 +164,7 @@ def _run_failures(run: Run) -> list[Failure]:
     ]
 
 
-def _sheet_name(*words: str) -> str:
+def sheet_name(*words: str) -> str:
     """A file name from words: lower case, runs of other characters than letters and digits become "_"."""
     joined = "".join(character if character.isalnum() else " " for character in " ".join(words).lower())
     return "_".join(joined.split())

@@ -82,13 +82,13 @@ def choose_evenly(count: int, limit: int = MAX_TILES) -> list[int]:
 
 
 def save_sheet(path: Path, tiles: Sequence[Image]) -> None:
-    """Write tiles as one JPEG, whole or not at all; nothing is written without tiles."""
+    """Write tiles as one picture of the kind of the path's suffix, whole or not at all; without tiles, nothing."""
     if not tiles:
         return
     missing = -len(tiles) % COLUMNS
     cells = [*tiles, *[np.zeros_like(tiles[0])] * missing]
     rows = [np.hstack(cells[start : start + COLUMNS]) for start in range(0, len(cells), COLUMNS)]
-    coded, content = cv2.imencode(".jpg", np.vstack(rows))
+    coded, content = cv2.imencode(path.suffix, np.vstack(rows))
     if not coded:
         raise ValueError(f"{path}: OpenCV could not encode the sheet")
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,6 @@
 """What is compared: the pipeline and the paper's chain behind one small interface."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -76,21 +76,27 @@ class Method(Protocol):
 
 
 class PipelineMethod:
-    """The product: `Pipeline` with the named model."""
+    """The product, or a variant of it: a name, and what opens its pipeline with a hold (None: the default dwell)."""
 
-    def __init__(self, model: str) -> None:
-        self._model = model
-        self._single = Pipeline(model=model)
+    def __init__(self, name: str, open_pipeline: Callable[[int | None], Pipeline]) -> None:
+        self._name = name
+        self._open = open_pipeline
+        self._single = open_pipeline(None)
 
     @property
     def name(self) -> str:
-        return "lightgesture"
+        return self._name
 
     def read(self, image: Image) -> list[Reading]:
         return _readings(self._single.recognize(image))
 
     def stream(self, hold: int | None) -> Stream:
-        return _PipelineStream(Pipeline(model=self._model, hold=hold))
+        return _PipelineStream(self._open(hold))
+
+
+def product(model: str) -> PipelineMethod:
+    """The product as it is shipped, with the named model."""
+    return PipelineMethod("lightgesture", lambda hold: Pipeline(model=model, hold=hold))
 
 
 class _PipelineStream:

@@ -7,6 +7,7 @@ from lightgesture.benchmarks.scorer import is_token, matched_readings, share
 from lightgesture.benchmarks.tables import Cell, Table
 
 SEEN = {
+    "webcam train": "pictures",
     "subhi": "pictures",
     "subhi_26": "person",
     "subhi_46": "person",
@@ -15,6 +16,11 @@ SEEN = {
     "u45": "pictures",
 }
 """Groups that the shipped models know: their very pictures, or other pictures of the same people."""
+
+
+def seen_word(run: Run) -> str:
+    """What the models of a run were trained on that its group shows."""
+    return SEEN.get(run.group, "no") if run.seen is None else run.seen
 
 
 def regions_table(runs: Sequence[Run]) -> Table:
@@ -50,7 +56,7 @@ def _region_row(run: Run) -> dict[str, Cell]:
     return {
         "method": run.method,
         "group": run.group,
-        "seen": SEEN.get(run.group, "no"),
+        "seen": seen_word(run),
         "mode": run.mode,
         "frames": score.frames,
         "hands": score.hands,
@@ -130,7 +136,7 @@ def negatives_table(runs: Sequence[Run]) -> Table:
         {
             "method": run.method,
             "group": run.group,
-            "seen": SEEN.get(run.group, "no"),
+            "seen": seen_word(run),
             "mode": run.mode,
             "frames": len(run.answers),
             "any_hand": sum(bool(answer.readings) for answer in run.answers),

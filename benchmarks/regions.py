@@ -46,12 +46,20 @@ class Answer:
     def failed(self) -> bool:
         """A labelled hand not found or its token not read, or a box where nothing is."""
         score = self.score
-        return score.found < score.hands or score.read < score.tokens or score.extra > 0
+        return self.misfound or score.read < score.tokens
+
+    @property
+    def misfound(self) -> bool:
+        """A labelled hand not found, or a box where nothing is."""
+        return self.score.found < self.score.hands or self.score.extra > 0
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One method over one group in one mode; decoded is None for single pictures."""
+    """One method over one group in one mode; decoded is None for single pictures and where nothing was read.
+
+    seen: what the method was trained on that the group shows, where that is not as for the shipped models.
+    """
 
     method: str
     group: str
@@ -59,6 +67,7 @@ class Run:
     hold: int | None
     answers: tuple[Answer, ...]
     decoded: Decoded | None
+    seen: str | None = None
 
     @property
     def score(self) -> Score:
@@ -80,7 +89,7 @@ def run_methods(methods: Sequence[Method], samples: Sequence[Sample], progress: 
 
 def run_single(method: Method, group: str, samples: Iterable[Sample]) -> Run:
     """Read every picture alone."""
-    answers = [_answer(sample, method.read(read_picture(sample.path))) for sample in samples]
+    answers = [make_answer(sample, method.read(read_picture(sample.path))) for sample in samples]
     return Run(method.name, group, SINGLE, None, tuple(answers), None)
 
 
@@ -89,12 +98,13 @@ def run_sequence(method: Method, group: str, samples: Iterable[Sample]) -> Run:
     hold = SCRIPTS[group].hold if group in SCRIPTS else None
     stream = method.stream(hold)
     answers = [
-        _answer(sample, stream.process(read_picture(sample.path), index / DEFAULT_FPS))
+        make_answer(sample, stream.process(read_picture(sample.path), index / DEFAULT_FPS))
         for index, sample in enumerate(samples)
     ]
     return Run(method.name, group, SEQUENCE, hold, tuple(answers), stream.finish())
 
 
-def _answer(sample: Sample, readings: Sequence[Reading]) -> Answer:
+def make_answer(sample: Sample, readings: Sequence[Reading]) -> Answer:
+    """The score of what was found in a picture; boxes beyond MAX_BOXES do not count."""
     counted = tuple(readings[:MAX_BOXES])
     return Answer(sample, counted, score_frame(sample.labels, counted, sample.complete))

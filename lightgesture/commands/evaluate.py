@@ -1,11 +1,12 @@
-"""`lightgesture evaluate`: score the models and the whole chain on labelled pictures and on the scenario suite."""
+"""`lightgesture evaluate`: score models, selectors and the whole chain on labelled pictures and on the suite."""
 
 import argparse
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
+from lightgesture.commands import evaluate_regions
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
@@ -13,8 +14,9 @@ if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
     from lightgesture.benchmarks.tables import Table
 
-SUITE = "suite"
-TARGETS = ("hands", "regions", SUITE)
+HANDS, REGIONS, SUITE = "hands", "regions", "suite"
+TARGETS = (HANDS, REGIONS, SUITE)
+DEFAULT_MODEL = "svm"
 Item = TypeVar("Item")
 
 
@@ -24,16 +26,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "target",
         nargs="?",
         choices=TARGETS,
-        help="hands: the classifier in given boxes; regions: the whole chain on whole frames; "
+        help="hands: the classifier in given boxes; regions: hands found in whole frames and, with --model, read; "
         "suite: the whole chain on signed clips that are rendered here and cached, which takes long at first "
-        "(default: hands and regions, as far as the data folder allows)",
+        "(default: hands and regions with a model, as far as the data folder allows)",
     )
     parser.add_argument(
         "--data",
         metavar="DIR",
         help="folder of labelled pictures (default: ../shared/data beside the checkout or current directory)",
     )
-    parser.add_argument("--model", default="svm", metavar="svm|cnn|PATH", help="classifier (default: svm)")
+    parser.add_argument(
+        "--model",
+        metavar="svm|cnn|PATH",
+        help=f"classifier (default: {DEFAULT_MODEL}; regions alone: none, hands are found and not read)",
+    )
+    evaluate_regions.add_arguments(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
     parser.add_argument(
         "--only",
@@ -57,6 +64,9 @@ def run(args: argparse.Namespace) -> int:
 
     if args.target != SUITE and (args.only or args.quick):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
+    for option in evaluate_regions.OPTIONS:
+        if args.target != REGIONS and getattr(args, option):
+            raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
     if args.jobs < 1:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
@@ -69,28 +79,38 @@ def run_pictures(args: argparse.Namespace) -> int:
     """Score the models on labelled pictures; 0 when all was done."""
     from lightgesture.benchmarks import accuracy
     from lightgesture.datasets import find_data
-    from lightgesture.models import ModelError, load_classifier
 
     data = find_data(args.data)
     available = accuracy.available_targets(data)
     targets = [args.target] if args.target else available
     if not targets or not set(targets) <= set(available):
         raise InputError(f"{data}: holds no pictures for {args.target or 'any evaluation'}; see --data")
-    try:
-        classifier = load_classifier(args.model)
-    except ModelError as error:
-        raise UsageError(str(error)) from error
-    for position, target in enumerate(targets):
-        if target == accuracy.HANDS:
-            report = accuracy.evaluate_hands(classifier, args.model, data, show_progress)
-        else:
-            methods = accuracy.default_methods(classifier, args.model, data)
-            report = accuracy.evaluate_regions(methods, data, show_progress)
+    for position, (report, suffix) in enumerate(reports(args, targets, data)):
         print_report(report, args.json, is_first=position == 0)
         if args.out:
-            for path in accuracy.save_failures(report, Path(args.out), say):
+            for path in accuracy.save_failures(report, Path(args.out), say, suffix):
                 say(f"wrote {path}")
     return ExitStatus.OK
+
+
+def reports(args: argparse.Namespace, targets: "Sequence[str]", data: Path) -> "Iterator[tuple[Report, str]]":
+    """What was asked for, one after the other, with the kind of picture that its failures are drawn to."""
+    from lightgesture.benchmarks import accuracy
+    from lightgesture.models import ModelError, load_classifier
+
+    model = args.model or DEFAULT_MODEL
+    is_reading = args.target != REGIONS or args.model is not None
+    try:
+        classifier = load_classifier(model) if is_reading else None
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if classifier is not None and HANDS in targets:
+        yield accuracy.evaluate_hands(classifier, model, data, show_progress), ".jpg"
+    if REGIONS in targets:
+        yield evaluate_regions.find_hands(args, data, show_progress), ".png"
+    if classifier is not None and REGIONS in targets:
+        methods = accuracy.default_methods(classifier, model, data)
+        yield accuracy.evaluate_regions(methods, data, show_progress), ".jpg"
 
 
 def run_suite(args: argparse.Namespace) -> int:
@@ -107,7 +127,8 @@ def run_suite(args: argparse.Namespace) -> int:
     if unknown := [name for name in args.only or () if name not in known]:
         raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
     try:
-        methods = default_methods(load_classifier(args.model), args.model, data)
+        model = args.model or DEFAULT_MODEL
+        methods = default_methods(load_classifier(model), model, data)
     except ModelError as error:
         raise UsageError(str(error)) from error
     chosen = suite.choose_takes(takes, args.only or (), args.quick)

@@ -2,16 +2,24 @@
 
 import argparse
 import json
+from copy import copy
 
 import cv2
 import numpy as np
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import accuracy
+from lightgesture.benchmarks import accuracy, finding_report
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
 from lightgesture.commands import evaluate
 from lightgesture.errors import InputError, UsageError
+
+
+def copy_named(method, name):
+    """The same method under another name."""
+    named = copy(method)
+    named.name = name
+    return named
 
 
 @pytest.fixture
@@ -25,7 +33,8 @@ def command(monkeypatch, data, fake_classifier, fake_method):
         return fake_method
 
     monkeypatch.setattr(models, "load_classifier", load)
-    monkeypatch.setattr(accuracy, "PipelineMethod", make_pipeline)
+    monkeypatch.setattr(accuracy, "product", make_pipeline)
+    monkeypatch.setattr(finding_report, "selector_method", lambda name: copy_named(fake_method, name))
     parser = argparse.ArgumentParser()
     evaluate.add_arguments(parser)
 
@@ -44,6 +53,9 @@ def test_all_targets_as_text(command, capsys):
         "Hands in given boxes, per token",
         "Hands in given boxes, per source",
         "Confusion of tokens (row: truth, column: read as)",
+        "Hands found in whole frames",
+        "Hands found by token, single frames of all groups",
+        "Frames without a gesturing diver in which hands were found",
         "Hands in whole frames",
         "Tokens in single frames (fake)",
         "Instructions of signed sequences",
@@ -52,10 +64,29 @@ def test_all_targets_as_text(command, capsys):
     assert captured.err == ""
 
 
-def test_json_rows_of_one_target(command, capsys):
-    assert command("regions", "--json") == 0
+def test_regions_alone_are_found_and_not_read(command, monkeypatch, capsys):
+    monkeypatch.setattr(models, "load_classifier", None)
+    assert command("regions", "--json", "--selector", "classical", "--selector", "other.npz") == 0
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
-    assert {row["table"] for row in rows} == {"regions", "regions_by_token", "instructions", "negatives"}
+    assert {row["table"] for row in rows} == {"found", "found_by_token", "false_hands"}
+    found = [(row["method"], row["group"], row["mode"]) for row in rows if row["table"] == "found"]
+    assert found == [
+        ("classical", "hover", "single"),
+        ("other.npz", "hover", "single"),
+        ("classical", "hover", "sequence"),
+        ("other.npz", "hover", "sequence"),
+        ("classical", "tank", "single"),
+        ("other.npz", "tank", "single"),
+    ]
+
+
+def test_regions_are_read_by_a_named_model(command, capsys):
+    assert command("regions", "--json", "--model", "svm") == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    assert {row["table"] for row in rows} == {
+        *("found", "found_by_token", "false_hands"),
+        *("regions", "regions_by_token", "instructions", "negatives"),
+    }
     methods = {row["method"] for row in rows if row["table"] == "regions"}
     assert methods == {"fake", "paper, bank", "paper, classifier"}
 
@@ -73,7 +104,10 @@ def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
     names = {path.name for path in out.iterdir()}
     assert {"hands_val.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
     assert "fake_reef_1_single.jpg" not in names
-    assert not [name for name in names if not name.endswith(".jpg")]
+    assert {name for name in names if not name.endswith(".jpg")} == {
+        "found_classical_hover_single.png",
+        "found_classical_hover_sequence.png",
+    }
     sheet = cv2.imdecode(
         np.frombuffer((out / "fake_hover_single.jpg").read_bytes(), np.uint8), cv2.IMREAD_COLOR
     )
@@ -82,7 +116,7 @@ def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
 
 
 def test_labels_are_green_and_readings_red(command, tmp_path):
-    command("regions", "--out", str(tmp_path))
+    command("regions", "--model", "svm", "--out", str(tmp_path))
     content = np.frombuffer((tmp_path / "fake_tank_single.jpg").read_bytes(), np.uint8)
     blue, green, red = (plane.astype(int) for plane in cv2.split(cv2.imdecode(content, cv2.IMREAD_COLOR)))
     assert ((red > 150) & (green < 120) & (blue < 120)).any()
@@ -104,7 +138,7 @@ def test_targets_that_the_folder_lacks_are_left_out(command, data, capsys):
 
 def test_paper_rows_need_the_training_pictures(command, data, capsys):
     (data / "hands").rename(data / "away")
-    command("regions", "--json")
+    command("regions", "--model", "svm", "--json")
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     assert {row["method"] for row in rows if row["table"] == "regions"} == {"fake"}
 

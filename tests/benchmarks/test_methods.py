@@ -6,7 +6,7 @@ import pytest
 
 from lightgesture.benchmarks import methods
 from lightgesture.benchmarks.hand_bank import HandBank, hu_moments, largest_contour
-from lightgesture.benchmarks.methods import Decoded, PaperMethod, PipelineMethod
+from lightgesture.benchmarks.methods import Decoded, PaperMethod, PipelineMethod, product
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.fsm import Decoder, load_grammar
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
@@ -95,10 +95,14 @@ class FakePipeline:
 def test_pipeline_method_reads_frames_and_collects_events(monkeypatch, scene):
     FakePipeline.created = []
     monkeypatch.setattr(methods, "Pipeline", FakePipeline)
-    method = PipelineMethod("some.npz")
+    method = product("some.npz")
+    assert isinstance(method, PipelineMethod)
     hand = Reading((1, 2, 640, 4), "left", "5")
     assert method.read(scene) == [hand]
     stream = method.stream(hold=1)
     assert [stream.process(scene, index / 30) for index in range(5)] == [[hand]] * 5
     assert stream.finish() == Decoded(("STOP", "HOVER", "GO"), ("STOP HOVER GO",), 0)
-    assert FakePipeline.created == [{"model": "some.npz"}, {"model": "some.npz", "hold": 1}]
+    assert FakePipeline.created == [
+        {"model": "some.npz", "hold": None},
+        {"model": "some.npz", "hold": 1},
+    ]

@@ -1,0 +1,129 @@
+"""Finding hands without reading them: the product's pipeline up to its tracks, for any number of selectors.
+
+A classifier may pick another extent of a region than the selector does, because it reads better. Here the selector's
+own extent counts, so that the figures do not depend on a model.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.benchmarks.methods import Image, PipelineMethod
+from lightgesture.benchmarks.regions import Progress, Run, run_sequence, run_single
+from lightgesture.datasets import Sample, group_samples, is_sequence
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.selector import RegionStage
+from lightgesture.features.selector_file import load_selector
+from lightgesture.features.tracks import TrackStage
+from lightgesture.features.types import Box
+from lightgesture.models import NONE
+from lightgesture.pipeline import Pipeline
+from lightgesture.reading import ReadingStage
+from lightgesture.training.left_out import LeftOut, read_left_out
+
+CLASSICAL = "classical"
+SELECTORS = (CLASSICAL,)
+"""The selectors of the product by their names; anything else is the path of a selector file."""
+
+
+class NoReader:
+    """Stands in for a classifier: every hand is of no known shape, so that its first extent is kept."""
+
+    classes: tuple[str, ...] = ("5", NONE)
+
+    def probabilities(
+        self, image_bgr: Image, boxes: Sequence[Box], sides: Sequence[str]
+    ) -> NDArray[np.float32]:
+        """float32 (number of boxes, 2), all of it on `none`, whatever the picture shows."""
+        del image_bgr, sides
+        return np.tile(np.array([0.0, 1.0], np.float32), (len(boxes), 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """What makes the stages of a pipeline, None for the product's own."""
+
+    colour: Callable[[], ColourStage] | None = None
+    regions: Callable[[], RegionStage] | None = None
+    tracks: Callable[[], TrackStage] | None = None
+
+
+class FindingPipeline(Pipeline):
+    """The product, except that nothing is read, and that single stages may be others."""
+
+    def __init__(self, stages: Stages | None = None) -> None:
+        super().__init__()
+        stages = stages or Stages()
+        self._reading = ReadingStage(NoReader())
+        if stages.colour is not None:
+            self._colour = stages.colour()
+        if stages.regions is not None:
+            self._regions = stages.regions()
+        if stages.tracks is not None:
+            self._tracks = stages.tracks()
+
+
+def variant(name: str, stages: Stages) -> PipelineMethod:
+    """A method that finds with other stages."""
+    return PipelineMethod(name, lambda _: FindingPipeline(stages))
+
+
+def selector_method(selector: str, file: str | None = None) -> PipelineMethod:
+    """A method that finds by one of SELECTORS, with what `file` holds instead of what is bundled, called after both.
+
+    selector may be a file itself. Raises lightgesture.features.selector_file.SelectorError.
+    """
+    if selector not in SELECTORS:
+        selector, file = CLASSICAL, selector
+    if file is None:
+        return variant(selector, Stages())
+    trained = load_selector(file)
+    return variant(f"{selector}, {Path(file).stem}", Stages(regions=lambda: RegionStage(trained)))
+
+
+def run_left_out(
+    selector: str,
+    files: Sequence[str],
+    samples: Sequence[Sample],
+    progress: Progress,
+    warn: Callable[[str], None],
+) -> list[Run]:
+    """Score trained files of a selector on exactly the sources that their cards say they did not see.
+
+    Each sample is scored by the first file that left out its source; those that no file left out are skipped, and
+    their number is told. Raises InputError (a card) and SelectorError (a file).
+    """
+    known = [(selector_method(selector, file), read_left_out(Path(file))) for file in files]
+    name = f"{selector}, left out"
+    runs = []
+    for group, members in group_samples(samples).items():
+        parts = _split(members, [left_out for _, left_out in known])
+        skipped = len(members) - sum(map(len, parts))
+        if skipped:
+            warn(
+                f"{group}: {skipped} of {len(members)} frames are of sources that no file was trained without"
+            )
+        modes = (run_single, run_sequence) if is_sequence(members) else (run_single,)
+        for run in modes:
+            done = [
+                run(method, group, progress(part, f"{name}: {group}"))
+                for (method, _), part in zip(known, parts, strict=True)
+                if part
+            ]
+            if done:
+                answers = tuple(answer for item in done for answer in item.answers)
+                runs.append(replace(done[0], method=name, answers=answers, decoded=None, seen="no"))
+    return runs
+
+
+def _split(samples: Iterable[Sample], left_outs: Sequence[LeftOut]) -> list[list[Sample]]:
+    """For each of `left_outs` the samples whose source it is the first to cover."""
+    parts: list[list[Sample]] = [[] for _ in left_outs]
+    for sample in samples:
+        place = next((i for i, item in enumerate(left_outs) if item.covers(sample.source)), None)
+        if place is not None:
+            parts[place].append(sample)
+    return parts

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.hu import HU_COUNT, hu_moments, log_signed
+from lightgesture.features.shape import convex_hull, convexity_defects
 
 Float = NDArray[np.float32]
 Mask = NDArray[np.uint8]
@@ -102,10 +103,12 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     """
     settings = settings or ContourSettings()
     area = max(float(cv2.contourArea(contour)), 1.0)
-    hull_area = max(float(cv2.contourArea(cv2.convexHull(contour))), area)
+    hull = convex_hull(contour)
+    hull_area = max(float(cv2.contourArea(hull)), area)
     perimeter = max(float(cv2.arcLength(contour, True)), 1.0)
     _, _, width, height = cv2.boundingRect(contour)
-    depths = defect_depths(contour) / settings.size
+    # Outlines in a triangle count as whole: the shipped classifiers learnt from numbers in which they do.
+    depths = convexity_defects(contour).depth / settings.size if len(hull) > 3 else np.zeros(0)
     shape = [
         area / settings.size**2,
         area / hull_area,
@@ -121,21 +124,6 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     return np.concatenate([shape, deepest, moments, radial_signature(contour, settings.directions)]).astype(
         np.float32
     )
-
-
-def defect_depths(contour: Contour) -> NDArray[np.float64]:
-    """Depths in pixels of the outline's convexity defects, float64 (k,)."""
-    if len(contour) < 4:
-        return np.zeros(0)
-    hull = np.asarray(cv2.convexHull(contour, returnPoints=False)).reshape(-1)
-    # OpenCV refuses a hull whose indices are not monotonous, which rounding makes of outlines that touch themselves.
-    hull = np.sort(hull)[::-1].astype(np.int32)
-    if len(hull) < 4:
-        return np.zeros(0)
-    defects = cv2.convexityDefects(contour.reshape(-1, 1, 2), hull.reshape(-1, 1))
-    if defects is None:
-        return np.zeros(0)
-    return np.asarray(defects, np.float64).reshape(-1, 4)[:, 3] / 256.0
 
 
 def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:

@@ -31,6 +31,9 @@ class CellSettings:
 
 DIRECTIONS = 4
 """Gradient directions over half a turn."""
+SHAPE_NUMBERS = 9
+COLUMNS = (3 + DIRECTIONS) * CellSettings().cells ** 2 + SHAPE_NUMBERS
+"""Numbers of one proposal."""
 
 
 def channels(colour: ColourMap) -> Float:
@@ -96,7 +99,7 @@ def describe(colour: ColourMap, proposals: Proposals, settings: CellSettings | N
     """
     settings = settings or CellSettings()
     if not len(proposals):
-        return np.zeros((0, 7 * settings.cells**2 + 9), np.float32)
+        return np.zeros((0, COLUMNS), np.float32)
     means = _cell_means(channels(colour), proposals.boxes, settings)
     luma = means[:, :1]
     centred = luma - luma.mean(axis=(2, 3), keepdims=True)

@@ -5,7 +5,9 @@ about a tenth of it. Giving the red channel back and then balancing the channels
 out again as the reddest thing in view.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import cv2
 
@@ -27,24 +29,36 @@ class ColourSettings:
     skin: SkinMapSettings = field(default_factory=SkinMapSettings)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class ColourMap:
     """A frame made ready for the search.
 
     picture: uint8 (h, w, 3), BGR, reduced to about the working area.
-    skin: uint8 (h, w), 0 least to 255 most skin-like.
+    detail: uint8 (h', w', 3), BGR, about twice as wide and high, from which a region is cut for a closer look.
     scale: (x, y) source pixels for one pixel of `picture`.
     source_size: (width, height) of the source frame, pixels.
+    skin_of: makes the skin map of a working picture.
     """
 
     picture: Image
-    skin: Image
+    detail: Image
     scale: tuple[float, float]
     source_size: tuple[int, int]
+    skin_of: Callable[[Image], Image]
+
+    @cached_property
+    def skin(self) -> Image:
+        """uint8 (h, w), 0 least to 255 most skin-like; made when it is first asked for."""
+        return self.skin_of(self.picture)
+
+    @property
+    def detail_scale(self) -> float:
+        """Pixels of `detail` for one of `picture`."""
+        return self.detail.shape[1] / self.picture.shape[1]
 
 
-def reduce_picture(image: Image, pixels: int) -> Image:
-    """Reduce `image` to about `pixels` pixels, aspect kept; a smaller one is returned as it is.
+def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:
+    """`image` reduced to about `pixels` pixels, aspect kept, and the step before; a smaller one is returned as it is.
 
     Two steps, the first to twice the size by plain sampling: one area-averaging step from full size
     costs four times as much and the difference does not show in the map.
@@ -52,11 +66,11 @@ def reduce_picture(image: Image, pixels: int) -> Image:
     height, width = image.shape[:2]
     ratio = (pixels / (height * width)) ** 0.5
     if ratio >= 1.0:
-        return image
+        return image, image
     target = max(1, round(width * ratio)), max(1, round(height * ratio))
     if ratio < 0.5:
         image = cv2.resize(image, (2 * target[0], 2 * target[1]), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
-    return cv2.resize(image, target, interpolation=cv2.INTER_AREA)  # type: ignore[return-value]
+    return cv2.resize(image, target, interpolation=cv2.INTER_AREA), image  # type: ignore[return-value]
 
 
 class ColourStage:
@@ -70,8 +84,10 @@ class ColourStage:
 
         Raises ValueError, one line, for an array that is no picture.
         """
-        picture = reduce_picture(as_bgr8(image), self.settings.working_pixels)
-        skin = skin_map(picture, self.settings.skin)
+        picture, detail = reduce_picture(as_bgr8(image), self.settings.working_pixels)
         height, width = image.shape[:2]
         scale = width / picture.shape[1], height / picture.shape[0]
-        return ColourMap(picture=picture, skin=skin, scale=scale, source_size=(width, height))
+        return ColourMap(picture, detail, scale, (width, height), self._skin)
+
+    def _skin(self, picture: Image) -> Image:
+        return skin_map(picture, self.settings.skin)

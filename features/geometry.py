@@ -1,5 +1,6 @@
 """Arithmetic on boxes; boxes are float or int arrays (n, 4) of x, y, width, height."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ def pairwise_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float6
     return overlap / np.maximum(union, 1e-9)  # type: ignore[no-any-return]
 
 
-def scale_box(box: Box, scale: tuple[float, float], size: tuple[int, int]) -> Box:
+def scale_box(box: Sequence[float], scale: tuple[float, float], size: tuple[int, int]) -> Box:
     """A box of the working picture in source pixels, kept inside `size` (width, height)."""
     x0, y0 = round(box[0] * scale[0]), round(box[1] * scale[1])
     x1, y1 = round((box[0] + box[2]) * scale[0]), round((box[1] + box[3]) * scale[1])

@@ -5,43 +5,46 @@ Networks for Efficient Integer-Arithmetic-Only Inference", 2018): value = scale 
 a scale for each output channel, biases int32 with the product of the input's and the weights' scales.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-WEIGHTED = ("conv", "depthwise", "dense")
-OPERATIONS = (*WEIGHTED, "add", "upsample")
-ACTIVATIONS = ("none", "relu6")
-LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, LARGEST_KERNEL = 4096, 1024, 256, 7
-"""Limits of what a file may ask for."""
+from lightgesture.features.network_nodes import (
+    PASSING,
+    WEIGHTED,
+    NetworkError,
+    Node,
+    Shape,
+    infer_shapes,
+    same_padding,
+    weight_shape,
+)
 
-Shape = tuple[int, int, int]
-"""Height, width, channels; a dense layer's output has height and width 1."""
+__all__ = [
+    "WEIGHTED",
+    "IntegerNetwork",
+    "NetworkError",
+    "Node",
+    "Quantisation",
+    "Shape",
+    "Weights",
+    "dequantise",
+    "infer_shapes",
+    "quantise",
+    "same_padding",
+    "weight_shape",
+]
 
-
-class NetworkError(ValueError):
-    """A network that cannot be used: one line with the reason."""
-
-
-@dataclass(frozen=True, slots=True)
-class Node:
-    """One layer.
-
-    op: "conv" (padding as TensorFlow's SAME), "depthwise" (likewise, one filter a channel), "dense" (over all of a
-    picture, height first, channels last), "add" (of two tensors), "upsample" (each cell doubled both ways). inputs: names
-    of nodes or inputs. channels: of the output, for conv and dense. kernel, stride: for conv and depthwise.
-    activation: "none" or "relu6" (0 to 6), for all but upsample.
-    """
-
-    name: str
-    op: str
-    inputs: tuple[str, ...]
-    channels: int = 0
-    kernel: int = 1
-    stride: int = 1
-    activation: str = "none"
+LARGEST_WEIGHT = 127
+"""Weights are symmetric, so -128 is not used."""
+LARGEST_BIAS = 2**30
+"""Biases and the sum of all products stay below this each, so that their sum fits int32."""
+LEAST_FACTOR, LARGEST_FACTOR = 2.0**-31, 2.0**8
+"""Of input scale times weight scale over output scale: what the kernels of XNNPACK take."""
+LEAST_RATIO, LARGEST_RATIO = 2.0**-10, 2.0**8
+"""Of the scale of an operand of an addition over that of the sum: likewise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,79 +79,38 @@ class IntegerNetwork:
     def check(self) -> None:
         """Refuse what does not fit together. Raises NetworkError."""
         shapes = infer_shapes(self.inputs, self.nodes)
-        if missing := [name for name in self.outputs if name not in shapes]:
+        computed = {node.name for node in self.nodes}
+        if not self.outputs or len(set(self.outputs)) != len(self.outputs):
+            raise NetworkError("the outputs must be one or more different nodes")
+        if missing := [name for name in self.outputs if name not in computed]:
             raise NetworkError(f"output {missing[0]} is no node")
         for name in shapes:
             _check_quantisation(name, self.quantisation.get(name))
         for node in self.nodes:
             if node.op in WEIGHTED:
                 _check_weights(node, self.weights.get(node.name), shapes)
+            self._check_scales(node)
 
+    def factors(self, node: Node) -> NDArray[np.float64]:
+        """What brings the sums of a weighted node to the scale of its output, for each channel."""
+        own, result = self.quantisation[node.inputs[0]], self.quantisation[node.name]
+        return self.weights[node.name].scales.astype(np.float64) * own.scale / result.scale
 
-def same_padding(size: int, kernel: int, stride: int) -> tuple[int, int]:
-    """Rows before and after, so that the output has ceil(size / stride) rows."""
-    total = max((-(-size // stride) - 1) * stride + kernel - size, 0)
-    return total // 2, total - total // 2
-
-
-def infer_shapes(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> dict[str, Shape]:
-    """Shape of every tensor for inputs of these shapes. Raises NetworkError."""
-    if len(nodes) > MOST_NODES:
-        raise NetworkError(f"{len(nodes)} nodes are more than {MOST_NODES}")
-    shapes = {name: tuple(shape) for name, shape in inputs.items()}
-    for name, shape in shapes.items():
-        _check_shape(name, shape)
-    for node in nodes:
-        _check_node(node, shapes)
-        shape = _output_shape(node, [shapes[name] for name in node.inputs])
-        _check_shape(node.name, shape)
-        shapes[node.name] = shape
-    return shapes  # type: ignore[return-value]
-
-
-def weight_shape(node: Node, source: Shape) -> tuple[int, ...]:
-    """Shape of a node's weights for an input of the shape `source`."""
-    if node.op == "conv":
-        return node.channels, node.kernel, node.kernel, source[2]
-    if node.op == "depthwise":
-        return 1, node.kernel, node.kernel, source[2]
-    return node.channels, source[0] * source[1] * source[2]
-
-
-def _output_shape(node: Node, sources: Sequence[tuple[int, ...]]) -> Shape:
-    height, width, channels = sources[0]
-    if node.op == "dense":
-        return 1, 1, node.channels
-    if node.op == "upsample":
-        return 2 * height, 2 * width, channels
-    if node.op == "add":
-        if sources[1] != sources[0]:
-            raise NetworkError(f"{node.name} adds tensors of different shapes, {sources[0]} and {sources[1]}")
-        return height, width, channels
-    rows, columns = -(-height // node.stride), -(-width // node.stride)
-    return rows, columns, node.channels if node.op == "conv" else channels
-
-
-def _check_node(node: Node, known: Mapping[str, object]) -> None:
-    if node.op not in OPERATIONS:
-        raise NetworkError(f"{node.name}: unknown operation {node.op!r}")
-    if node.activation not in ACTIVATIONS:
-        raise NetworkError(f"{node.name}: unknown activation {node.activation!r}")
-    if node.name in known:
-        raise NetworkError(f"{node.name}: the name is used twice")
-    if len(node.inputs) != (2 if node.op == "add" else 1):
-        raise NetworkError(f"{node.name}: {len(node.inputs)} inputs do not fit {node.op}")
-    if unknown := [name for name in node.inputs if name not in known]:
-        raise NetworkError(f"{node.name}: its input {unknown[0]} does not come before it")
-    if not (1 <= node.kernel <= LARGEST_KERNEL and 1 <= node.stride <= 4):
-        raise NetworkError(f"{node.name}: kernel 1 to {LARGEST_KERNEL}, stride 1 to 4")
-
-
-def _check_shape(name: str, shape: tuple[int, ...]) -> None:
-    if len(shape) != 3 or not all(1 <= side <= LARGEST_SIDE for side in shape[:2]):
-        raise NetworkError(f"{name}: shape {shape} is not height, width, channels up to {LARGEST_SIDE}")
-    if not 1 <= shape[2] <= MOST_CHANNELS:
-        raise NetworkError(f"{name}: {shape[2]} channels; 1 to {MOST_CHANNELS} are allowed")
+    def _check_scales(self, node: Node) -> None:
+        sources = [self.quantisation[name] for name in node.inputs]
+        result = self.quantisation[node.name]
+        if node.op in WEIGHTED:
+            factors = self.factors(node)
+            if not (factors.min() >= LEAST_FACTOR and factors.max() < LARGEST_FACTOR):
+                raise NetworkError(
+                    f"{node.name}: scales of input and weights over that of the output must be "
+                    f"{LEAST_FACTOR:.1e} to {LARGEST_FACTOR:.0f}, not {factors.min():.1e} to {factors.max():.1e}"
+                )
+        elif node.op in PASSING:
+            if any(source != result for source in sources):
+                raise NetworkError(f"{node.name}: the inputs of {node.op} must have the scale of its output")
+        elif not all(LEAST_RATIO <= source.scale / result.scale < LARGEST_RATIO for source in sources):
+            raise NetworkError(f"{node.name}: the scales of the inputs of {node.op} are too far from its output's")
 
 
 def _check_quantisation(name: str, quantisation: Quantisation | None) -> None:
@@ -165,6 +127,13 @@ def _check_weights(node: Node, weights: Weights | None, shapes: Mapping[str, Sha
     channels = shapes[node.name][2]
     if weights.biases.shape != (channels,) or weights.scales.shape != (channels,):
         raise NetworkError(f"{node.name}: {channels} biases and scales are needed")
+    kinds = (weights.weights.dtype, weights.biases.dtype, weights.scales.dtype)
+    if kinds != (np.int8, np.int32, np.float32):
+        raise NetworkError(f"{node.name}: weights, biases and scales must be int8, int32 and float32")
+    if weights.weights.min() < -LARGEST_WEIGHT:
+        raise NetworkError(f"{node.name}: a weight is below -{LARGEST_WEIGHT}")
+    if np.abs(weights.biases.astype(np.int64)).max() > LARGEST_BIAS:
+        raise NetworkError(f"{node.name}: a bias is beyond {LARGEST_BIAS}")
     if not (np.isfinite(weights.scales).all() and (weights.scales > 0).all()):
         raise NetworkError(f"{node.name}: the scales of its weights must be above 0")
 

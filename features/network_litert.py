@@ -39,8 +39,7 @@ class LiteRtRunner:
             interpreter.set_tensor(place, inputs[name])
         interpreter.invoke()
         return {
-            name: interpreter.get_tensor(place)
-            for name, place in zip(network.outputs, results, strict=True)
+            name: interpreter.get_tensor(place) for name, place in zip(network.outputs, results, strict=True)
         }
 
     def _plan(self, inputs: Mapping[str, Levels]) -> tuple[Any, list[int], list[int]]:
@@ -163,13 +162,11 @@ class _Writer:
         own, kinds = self._network.weights[node.name], self._schema.TensorType
         axis = 3 if node.op == "depthwise" else 0
         shape = own.weights.shape
-        weights = self._tensor(
-            f"{node.name}/weights", shape, kinds.INT8, own.weights, (own.scales, axis)
+        weights = self._tensor(f"{node.name}/weights", shape, kinds.INT8, own.weights, (own.scales, axis))
+        scales = (own.scales * np.float32(self._network.quantisation[node.inputs[0]].scale)).astype(
+            np.float32
         )
-        scales = (own.scales * np.float32(self._network.quantisation[node.inputs[0]].scale)).astype(np.float32)
-        biases = self._tensor(
-            f"{node.name}/biases", own.biases.shape, kinds.INT32, own.biases, (scales, 0)
-        )
+        biases = self._tensor(f"{node.name}/biases", own.biases.shape, kinds.INT32, own.biases, (scales, 0))
         return [weights, biases]
 
     def _options(self, node: Node) -> tuple[int, int, Any]:

@@ -1,101 +1,155 @@
-"""The reference: the integers of a network computed in NumPy, as LiteRT's own reference kernels do.
+"""The reference: the integers of a network computed in NumPy, as LiteRT's own reference kernels define them.
 
-Slow and plain. It is what the fast run-time is tested against, and what runs where that is not installed.
+Plain, without a run-time to install. It is what the fast run-time is tested against, and what runs where that is missing.
 """
 
-import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.network import IntegerNetwork, Node, Quantisation, same_padding
+from lightgesture.features.network import IntegerNetwork, Quantisation
+from lightgesture.features.network_nodes import Node, same_padding
 
 Levels = NDArray[np.int8]
 Wide = NDArray[np.int64]
 
 ADD_SHIFT = 20
-"""Bits by which an addition widens its operands before it scales them."""
+"""Bits by which an addition widens its operands before it scales them (LiteRT's reference kernel)."""
+MULTIPLIER_BITS = 31
+LARGEST_PRODUCT = 255 * 127
+"""Of a level without its zero point and a weight."""
+EXACT_IN_FLOAT32 = 2**24
+"""float32 holds every integer up to here, so sums below it may take the fast matrix product."""
+LOWEST, HIGHEST = -128, 127
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Layer:
+    """weights: of a weighted node as floats wide enough for exact sums: (k, k, in, out), depthwise (k, k, channels),
+    dense (in, out). factors: to the scale of the output."""
+
+    weights: NDArray[np.floating]
+    biases: Wide
+    factors: NDArray[np.float64]
 
 
 class NumpyRunner:
-    """Runs a network of any input size and batch."""
+    """Runs a network on any batch and any height and width that its layers allow."""
 
     def __init__(self, network: IntegerNetwork) -> None:
         self._network = network
+        self._layers = {
+            node.name: _layer(network, node) for node in network.nodes if node.name in network.weights
+        }
 
     def run(self, inputs: Mapping[str, Levels]) -> dict[str, Levels]:
         """int8 (n, h, w, channels) for each input -> the same for each output."""
-        network = self._network
         tensors = dict(inputs)
-        for node in network.nodes:
+        for node in self._network.nodes:
             tensors[node.name] = self._compute(node, [tensors[name] for name in node.inputs])
-        return {name: tensors[name] for name in network.outputs}
+        return {name: tensors[name] for name in self._network.outputs}
 
     def _compute(self, node: Node, sources: list[Levels]) -> Levels:
         if node.op == "upsample":
             return sources[0].repeat(2, axis=1).repeat(2, axis=2)
-        scales = self._network.quantisation
+        if node.op == "concat":
+            return np.concatenate(sources, axis=3)
+        if node.op == "max_pool":
+            return _max_pool(node, sources[0])
+        scales = [self._network.quantisation[name] for name in node.inputs]
+        result = self._network.quantisation[node.name]
         if node.op == "add":
-            quantised = [scales[name] for name in node.inputs]
-            return _add(sources, quantised, scales[node.name], node.activation)
-        weights = self._network.weights[node.name]
-        own, result = scales[node.inputs[0]], scales[node.name]
-        sums = _weighted_sums(node, sources[0].astype(np.int64) - own.zero, weights.weights.astype(np.int64))
-        sums += weights.biases
-        factors = weights.scales.astype(np.float64) * own.scale / result.scale
-        scaled = np.empty_like(sums)
-        for channel, factor in enumerate(factors):
-            scaled[..., channel] = multiply(sums[..., channel], float(factor))
-        return _activate(scaled, result, node.activation)
+            return _add(node, sources, scales, result)
+        if node.op == "mean":
+            return _mean(sources[0], scales[0], result)
+        layer = self._layers[node.name]
+        sums = _weighted_sums(node, layer.weights, sources[0], scales[0].zero)
+        return _activate(multiply(sums + layer.biases, layer.factors), result, node.activation)
 
 
-def multiply(values: Wide, factor: float) -> Wide:
-    """Values times a factor, as a 31-bit multiplier and a shift, rounded to the nearest."""
-    mantissa, exponent = math.frexp(factor)
-    multiplier = round(mantissa * (1 << 31))
-    shift = 31 - exponent
-    return np.asarray((values * multiplier + (1 << (shift - 1))) >> shift)
+def multiply(values: Wide, factors: NDArray[np.float64] | float) -> Wide:
+    """Values times factors, each a 31-bit multiplier and a shift, rounded to the nearest, halves upwards."""
+    mantissas, exponents = np.frexp(np.asarray(factors, np.float64))
+    multipliers = np.rint(mantissas * (1 << MULTIPLIER_BITS)).astype(np.int64)
+    shifts = MULTIPLIER_BITS - exponents.astype(np.int64)
+    return np.asarray((values * multipliers + (np.int64(1) << (shifts - 1))) >> shifts)
 
 
-def _weighted_sums(node: Node, source: Wide, weights: Wide) -> Wide:
+def _layer(network: IntegerNetwork, node: Node) -> _Layer:
+    own = network.weights[node.name]
+    weights = own.weights
+    if node.op == "conv":
+        weights = weights.transpose(1, 2, 3, 0)
+    elif node.op == "depthwise":
+        weights = weights[0]
+    else:
+        weights = weights.T
+    summed = weights.size // len(own.biases)
+    exact = np.float32 if summed * LARGEST_PRODUCT < EXACT_IN_FLOAT32 else np.float64
+    return _Layer(
+        np.ascontiguousarray(weights, dtype=exact), own.biases.astype(np.int64), network.factors(node)
+    )
+
+
+def _weighted_sums(node: Node, weights: NDArray[np.floating], levels: Levels, zero: int) -> Wide:
     """Sums of products over the taps of each output cell: int64 (n, h, w, channels)."""
+    source = levels.astype(weights.dtype) - weights.dtype.type(zero)
     if node.op == "dense":
-        flat = source.reshape(len(source), -1)
-        return np.asarray((flat @ weights.T)[:, None, None, :])
-    rows, columns = source.shape[1:3]
-    above, below = same_padding(rows, node.kernel, node.stride)
-    before, after = same_padding(columns, node.kernel, node.stride)
+        flat = source.reshape(len(source), weights.shape[0])
+        return np.asarray(flat @ weights, np.int64)[:, None, None, :]
     # The zero point was taken off, so what is padded counts as the value 0.
-    padded = np.pad(source, ((0, 0), (above, below), (before, after), (0, 0)))
+    parts = _taps(source, node, fill=0)
+    if node.op == "depthwise":
+        sums = sum(part * weights[row, column] for row, column, part in parts)
+    else:
+        sums = sum(part @ weights[row, column] for row, column, part in parts)
+    return np.asarray(sums, np.int64)
+
+
+def _taps(source: NDArray[np.generic], node: Node, fill: int) -> list[tuple[int, int, NDArray[np.generic]]]:
+    """(row, column, what each output cell sees there) for every place of the kernel."""
+    rows, columns = source.shape[1:3]
+    padding = same_padding(rows, node.kernel, node.stride), same_padding(columns, node.kernel, node.stride)
+    padded = np.pad(source, ((0, 0), *padding, (0, 0)), constant_values=fill)
     height, width = -(-rows // node.stride), -(-columns // node.stride)
-    channels = weights.shape[3] if node.op == "depthwise" else weights.shape[0]
-    sums = np.zeros((len(source), height, width, channels), np.int64)
+    parts = []
     for row in range(node.kernel):
         for column in range(node.kernel):
             last_row = row + node.stride * (height - 1) + 1
             last_column = column + node.stride * (width - 1) + 1
             part = padded[:, row : last_row : node.stride, column : last_column : node.stride]
-            tap = weights[:, row, column]
-            sums += part * tap[0] if node.op == "depthwise" else part @ tap.T
-    return sums
+            parts.append((row, column, part))
+    return parts
 
 
-def _add(
-    sources: list[Levels], scales: list[Quantisation], result: Quantisation, activation: str
-) -> Levels:
+def _max_pool(node: Node, source: Levels) -> Levels:
+    parts = [part for _, _, part in _taps(source, node, fill=LOWEST)]
+    return np.asarray(np.maximum.reduce(parts), np.int8)
+
+
+def _mean(source: Levels, own: Quantisation, result: Quantisation) -> Levels:
+    cells = source.shape[1] * source.shape[2]
+    sums = (source.astype(np.int64) - own.zero).sum(axis=(1, 2), keepdims=True)
+    return _activate(multiply(sums, own.scale / (result.scale * cells)), result, "none")
+
+
+def _add(node: Node, sources: list[Levels], scales: list[Quantisation], result: Quantisation) -> Levels:
     """Both operands on a common scale, added, and brought to the result's."""
     twice_largest = 2.0 * max(scale.scale for scale in scales)
     total = np.zeros(sources[0].shape, np.int64)
     for levels, scale in zip(sources, scales, strict=True):
         shifted = (levels.astype(np.int64) - scale.zero) << ADD_SHIFT
         total += multiply(shifted, scale.scale / twice_largest)
-    return _activate(multiply(total, twice_largest / ((1 << ADD_SHIFT) * result.scale)), result, activation)
+    factor = twice_largest / ((1 << ADD_SHIFT) * result.scale)
+    return _activate(multiply(total, factor), result, node.activation)
 
 
 def _activate(values: Wide, result: Quantisation, activation: str) -> Levels:
-    low, high = -128, 127
-    if activation == "relu6":
+    low, high = LOWEST, HIGHEST
+    if activation != "none":
         low = max(low, result.zero)
+    if activation == "relu6":
         high = min(high, result.zero + round(6.0 / result.scale))
     return np.asarray(np.clip(values + result.zero, low, high), np.int8)

@@ -1,76 +1,105 @@
 """Numbers of a pair of regions: do they look like the two hands of one person?
 
-Two hands that sign are about as large and as high as each other, stand apart, and have one skin.
+Two hands that sign are about as large and as high as each other, stand apart, have one skin, and a face
+between them.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.colour import ColourMap
-from lightgesture.features.proposals import Proposals
-from lightgesture.features.wrist import fill_contour
+from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.trees import Trees, evaluate
 
 Float = NDArray[np.float32]
+Point = tuple[float, float]
 
-COLUMNS = 15
+COLUMNS = 17
 """Numbers of one pair."""
+FAR = 9.0
+"""Stands for the distance of a face where none is seen, in hand sizes."""
+DARKEST = 0.02
+"""Added to mean colours (0 to 1) before their ratio is taken, about five grey levels."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
-    """A scored proposal. box: x, y, width, height, working pixels. score: predicted IoU with a hand.
-    level: 0 to 31. colour: float32 (4,), mean blue, green, red and skin inside the outline, 0 to 1."""
+    """A scored region. box: float32 (4,), x, y, width, height, working pixels. score: predicted IoU with a hand.
+    strength: how clearly it stands out, the level of its threshold or the heat of its peak; only the difference
+    between two counts. colour: float32 (3,), mean blue, green and red inside, 0 to 1."""
 
-    box: NDArray[np.float32]
+    box: Float
     score: float
-    level: float
+    strength: float
     colour: Float
 
 
-def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float) -> Candidate:
-    """The numbers of one proposal that its pairs need."""
-    x, y, width, height = (int(value) for value in proposals.boxes[index])
-    mask = fill_contour(proposals.contours[index], (x, y, width, height))
-    window = slice(y, y + height), slice(x, x + width)
-    means = cv2.mean(colour.picture[window], mask)[:3] + cv2.mean(colour.skin[window], mask)[:1]
-    return Candidate(
-        box=proposals.boxes[index].astype(np.float32),
-        score=score,
-        level=float(proposals.levels[index]),
-        colour=np.array(means, np.float32) / np.float32(255.0),
-    )
+def describe_pairs(
+    first: Sequence[Candidate], second: Sequence[Candidate], size: tuple[int, int], face: Point | None
+) -> Float:
+    """float32 (pairs, COLUMNS), one row for each first with its second, the same whichever of the two comes first.
 
-
-def describe_pair(first: Candidate, second: Candidate, size: tuple[int, int]) -> Float:
-    """float32 (15,), the same whichever of the two comes first; `size` (width, height), working pixels."""
-    a, b = sorted((first, second), key=lambda item: float(item.box[0] + item.box[2] / 2))
-    centre_a, centre_b = a.box[:2] + a.box[2:] / 2, b.box[:2] + b.box[2:] / 2
-    side_a, side_b = np.sqrt(a.box[2:].prod()), np.sqrt(b.box[2:].prod())
-    unit = np.sqrt(side_a * side_b)
-    apart = (centre_b - centre_a) / unit
-    gap = (b.box[0] - a.box[0] - a.box[2]) / unit
-    middle = (centre_a + centre_b) / 2
-    contrast = np.log((a.colour + 0.02) / (b.colour + 0.02))
-    return np.array(
+    size: (width, height) of the working picture. face: centre of the likeliest face, None where none is seen.
+    """
+    if not first:
+        return np.zeros((0, COLUMNS), np.float32)
+    a, b = _table(first), _table(second)
+    swapped = a[:, 0] + a[:, 2] / 2 > b[:, 0] + b[:, 2] / 2
+    a[swapped], b[swapped] = b[swapped], a[swapped]
+    sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
+    unit = np.sqrt(sides_a * sides_b)
+    centres_a, centres_b = a[:, :2] + a[:, 2:4] / 2, b[:, :2] + b[:, 2:4] / 2
+    apart = (centres_b - centres_a) / unit[:, None]
+    middle = (centres_a + centres_b) / 2
+    contrast = np.log((a[:, 6:] + DARKEST) / (b[:, 6:] + DARKEST))
+    to_face = np.full((len(a), 2), FAR) if face is None else (np.array(face) - middle) / unit[:, None]
+    return np.column_stack(
         [
-            min(a.score, b.score),
-            max(a.score, b.score),
-            abs(np.log(side_a / side_b)),
-            abs(np.log(a.box[2] / b.box[2])),
-            abs(np.log(a.box[3] / b.box[3])),
-            apart[0],
-            abs(apart[1]),
-            gap,
-            abs((a.box[1] + a.box[3]) - (b.box[1] + b.box[3])) / unit,
-            middle[0] / size[0],
-            middle[1] / size[1],
+            np.minimum(a[:, 4], b[:, 4]),
+            np.maximum(a[:, 4], b[:, 4]),
+            np.abs(np.log(sides_a / sides_b)),
+            np.abs(np.log(a[:, 2:4] / b[:, 2:4])),
+            apart[:, 0],
+            np.abs(apart[:, 1]),
+            (b[:, 0] - a[:, 0] - a[:, 2]) / unit,
+            np.abs((a[:, 1] + a[:, 3]) - (b[:, 1] + b[:, 3])) / unit,
+            middle / np.array(size),
             np.log(unit / min(size)),
-            abs(contrast[:3].mean()),
-            abs(contrast[2] - contrast[1]),
-            abs(a.level - b.level),
-        ],
-        np.float32,
-    )
+            np.abs(contrast.mean(axis=1)),
+            np.abs(contrast[:, 2] - contrast[:, 1]),
+            np.abs(a[:, 5] - b[:, 5]),
+            np.abs(to_face[:, 0]),
+            to_face[:, 1],
+        ]
+    ).astype(np.float32)
+
+
+def _table(candidates: Sequence[Candidate]) -> NDArray[np.float64]:
+    """float64 (n, 9): box, score, strength, colour."""
+    return np.array([(*item.box, item.score, item.strength, *item.colour) for item in candidates], np.float64)
+
+
+def pair_numbers(
+    candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None, apart_iou: float
+) -> tuple[list[tuple[int, int]], Float]:
+    """All pairs of candidates that overlap at most `apart_iou`, and their numbers, float32 (pairs, COLUMNS)."""
+    boxes = np.array([item.box for item in candidates]).reshape(-1, 4)
+    overlap = pairwise_iou(boxes, boxes)
+    count = len(candidates)
+    pairs = [(i, j) for i in range(count) for j in range(i + 1, count) if overlap[i, j] <= apart_iou]
+    first, second = [candidates[i] for i, _ in pairs], [candidates[j] for _, j in pairs]
+    return pairs, describe_pairs(first, second, size, face)
+
+
+def score_pairs(
+    trees: Trees, candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None, apart_iou: float
+) -> Float:
+    """float32 (n, n), symmetric, 0 to 1: how well each two candidates go together; 0 for those that overlap."""
+    together = np.zeros((len(candidates), len(candidates)), np.float32)
+    pairs, rows = pair_numbers(candidates, size, face, apart_iou)
+    if pairs:
+        first, second = np.array(pairs).T
+        together[first, second] = evaluate(trees, rows).clip(0.0, 1.0)
+    return np.maximum(together, together.T)

@@ -1,23 +1,27 @@
-"""The selector's data file: the trees that score regions and pairs, as plain arrays."""
+"""The selector's data file: nets and trees of the learned choice and trees of the classical one, as plain arrays."""
 
 import os
 import zipfile
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.cells import CellSettings
-from lightgesture.features.pairs import COLUMNS as PAIR_COLUMNS
+from lightgesture.features import cells, choice, pairs
+from lightgesture.features.network import IntegerNetwork, NetworkError
+from lightgesture.features.network_file import network_arrays, network_from
 from lightgesture.features.trees import Trees
 
-VERSION = 1
+VERSION = 2
 LARGEST_FILE = 8 * 1024 * 1024
 """Bytes; a file beyond this is refused unread."""
-
 BUNDLED = Path(__file__).parent / "data" / "selector.npz"
+REMEDY = "make it again with: lightgesture train regions"
+
+Parts = TypeVar("Parts")
 
 _ARRAYS = ("feature", "threshold", "left", "right", "value")
 _SCALARS = ("base", "depth")
@@ -28,26 +32,97 @@ class SelectorError(ValueError):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Selector:
+class ClassicalParts:
     """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both."""
 
     regions: Trees
     pairs: Trees
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class LearnedParts:
+    """locator, refiner: the nets. places: predicts the IoU of a refined box with a hand. pairs: of a pair, the lower
+    of both."""
+
+    locator: IntegerNetwork
+    refiner: IntegerNetwork
+    places: Trees
+    pairs: Trees
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Selector:
+    """What is needed for either choice."""
+
+    classical: ClassicalParts
+    learned: LearnedParts
+
+
 def save_selector(path: Path, selector: Selector) -> None:
     """Write the file under a temporary name, then rename it."""
-    arrays: dict[str, Any] = {"version": np.int32(VERSION)}
-    for part, trees in (("regions", selector.regions), ("pairs", selector.pairs)):
-        for name in (*_ARRAYS, *_SCALARS):
-            arrays[f"{part}_{name}"] = np.asarray(getattr(trees, name))
+    learned, classical = selector.learned, selector.classical
+    arrays: dict[str, NDArray[Any]] = {
+        "version": np.array(VERSION, np.int32),
+        **_tree_arrays("regions", classical.regions),
+        **_tree_arrays("region_pairs", classical.pairs),
+        **_tree_arrays("places", learned.places),
+        **_tree_arrays("place_pairs", learned.pairs),
+        **network_arrays("locator", learned.locator),
+        **network_arrays("refiner", learned.refiner),
+    }
     temporary = path.with_name(path.name + ".part")
     with temporary.open("wb") as stream:
-        np.savez_compressed(stream, **arrays)
+        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
     os.replace(temporary, path)
 
 
-def _trees(arrays: dict[str, NDArray[Any]], part: str, columns: int) -> Trees:
+def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts:
+    """The classical choice of a file; without a path, of the bundled one. Raises SelectorError."""
+
+    def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
+        return ClassicalParts(
+            _trees(arrays, "regions", cells.COLUMNS), _trees(arrays, "region_pairs", pairs.COLUMNS)
+        )
+
+    return _read(path, read)
+
+
+def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
+    """The learned choice of a file; without a path, of the bundled one. Raises SelectorError."""
+
+    def read(arrays: Mapping[str, NDArray[Any]]) -> LearnedParts:
+        return LearnedParts(
+            network_from(arrays, "locator"),
+            network_from(arrays, "refiner"),
+            _trees(arrays, "places", choice.COLUMNS),
+            _trees(arrays, "place_pairs", pairs.COLUMNS),
+        )
+
+    return _read(path, read)
+
+
+def _read(path: str | os.PathLike[str] | None, read: Callable[[Mapping[str, NDArray[Any]]], Parts]) -> Parts:
+    file = Path(path) if path is not None else BUNDLED
+    try:
+        if file.stat().st_size > LARGEST_FILE:
+            raise SelectorError(f"{file}: larger than {LARGEST_FILE} bytes, so it is no selector; {REMEDY}")
+        with np.load(file, allow_pickle=False) as stored:
+            if int(stored["version"]) != VERSION:
+                raise SelectorError(f"{file}: version {int(stored['version'])}, expected {VERSION}; {REMEDY}")
+            return read(stored)
+    except SelectorError:
+        raise
+    except OSError as error:
+        raise SelectorError(f"{file}: cannot be read ({error.strerror}); {REMEDY}") from None
+    except (NetworkError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
+        raise SelectorError(f"{file}: no valid selector ({error}); {REMEDY}") from None
+
+
+def _tree_arrays(part: str, trees: Trees) -> dict[str, NDArray[Any]]:
+    return {f"{part}_{name}": np.asarray(getattr(trees, name)) for name in (*_ARRAYS, *_SCALARS)}
+
+
+def _trees(arrays: Mapping[str, NDArray[Any]], part: str, columns: int) -> Trees:
     trees = Trees(
         feature=arrays[f"{part}_feature"].astype(np.int16),
         threshold=arrays[f"{part}_threshold"].astype(np.float32),
@@ -59,24 +134,3 @@ def _trees(arrays: dict[str, NDArray[Any]], part: str, columns: int) -> Trees:
     )
     trees.check(columns)
     return trees
-
-
-def load_selector(path: str | os.PathLike[str] | None = None) -> Selector:
-    """Read a selector; without a path, the bundled one. Raises SelectorError."""
-    file = Path(path) if path is not None else BUNDLED
-    remedy = "make it again with: lightgesture train regions"
-    try:
-        if file.stat().st_size > LARGEST_FILE:
-            raise SelectorError(f"{file}: larger than {LARGEST_FILE} bytes, so it is no selector; {remedy}")
-        with np.load(file, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
-        if int(arrays["version"]) != VERSION:
-            raise SelectorError(f"{file}: version {int(arrays['version'])}, expected {VERSION}; {remedy}")
-        cells = 7 * CellSettings().cells ** 2 + 9
-        return Selector(_trees(arrays, "regions", cells), _trees(arrays, "pairs", PAIR_COLUMNS))
-    except SelectorError:
-        raise
-    except OSError as error:
-        raise SelectorError(f"{file}: cannot be read ({error.strerror}); {remedy}") from None
-    except (KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
-        raise SelectorError(f"{file}: no valid selector ({error}); {remedy}") from None

@@ -1,253 +1,213 @@
 """Two hands followed through the frames: a Kalman filter each, a side for life, birth only on good evidence.
 
-The filter remembers where a hand was and how large, and a region that agrees with this memory is believed at
-a lower score. A pair that scores far better elsewhere still wins, so that a track on the wrong thing
-cannot hold on: every frame is searched whole.
+What a frame does to the tracks, in order: all are predicted to its time; each finds its region or misses it; regions
+that may be hands come under observation as tentative tracks; pairs of tracks gather evidence; a believed pair, or
+without one a believed single hand, is confirmed, in the place of what it contradicts; what was unseen or unproved
+for too long ends. The arithmetic is in pure functions (`matching`, `births`, `evidence`, `track_state`); the stage
+holds the state and the clock.
 """
 
 import math
-from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from lightgesture.features import kalman
-from lightgesture.features.kalman import Coordinate
-from lightgesture.features.selector import SelectorSettings, best_pair, side_in_picture
-from lightgesture.features.types import Box, Candidates, HandRegion, Side, Track
-
-
-@dataclass(frozen=True, slots=True)
-class TrackSettings:
-    """How tracks live.
-
-    measurement_noise: standard deviation of a region's centre and size over the hand's size, 0.02 to 0.3.
-    acceleration: standard deviation, hand sizes a second squared; larger follows faster hands and gates less.
-    gate: largest squared Mahalanobis distance over four coordinates at which a region is the track's own;
-        13.3 is the 99th percentile of chi-squared with four degrees of freedom.
-    memory_gain: added to the score of a region at the predicted place, 0 to 0.3.
-    keep_score: least score of a single region that a track accepts as its own.
-    birth_frames: frames in a row in which a region without a partner must be seen before it becomes a track.
-    lost_s: seconds without a region after which a track ends.
-    longest_step_s: a larger gap in time ends all tracks.
-    """
-
-    measurement_noise: float = 0.08
-    acceleration: float = 40.0
-    gate: float = 13.3
-    memory_gain: float = 0.15
-    keep_score: float = 0.2
-    birth_frames: int = 3
-    lost_s: float = 0.25
-    longest_step_s: float = 1.0
-
-
-Measured = tuple[float, float, float, float]
-"""Centre x, centre y, width, height in source pixels."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Life:
-    """A track's own state. coordinates: centre x, centre y, width, height. seen_s: time of the last region."""
-
-    track: Track
-    coordinates: tuple[Coordinate, ...]
-    seen_s: float
-
-
-def _measure(box: Box) -> Measured:
-    return box[0] + box[2] / 2, box[1] + box[3] / 2, float(box[2]), float(box[3])
-
-
-def _box(coordinates: tuple[Coordinate, ...], size: tuple[int, int]) -> Box:
-    x, y, width, height = (item.position for item in coordinates)
-    left, top = max(0, round(x - width / 2)), max(0, round(y - height / 2))
-    left, top = min(left, size[0] - 1), min(top, size[1] - 1)
-    return left, top, max(1, min(round(width), size[0] - left)), max(1, min(round(height), size[1] - top))
-
-
-def _hand_size(coordinates: tuple[Coordinate, ...]) -> float:
-    return math.sqrt(max(coordinates[2].position * coordinates[3].position, 1.0))
-
-
-def squared_distance(coordinates: tuple[Coordinate, ...], measured: Measured, noise: float) -> float:
-    """Squared Mahalanobis distance of a box from a predicted one, over centre and size. The filters of
-    the coordinates are independent, so it is the sum of theirs."""
-    variance = (noise * _hand_size(coordinates)) ** 2
-    return sum(kalman.distance(c, z, variance) for c, z in zip(coordinates, measured, strict=True))
-
-
-def assign(distances: NDArray[np.float64], gate: float) -> dict[int, int]:
-    """Track -> region for at most two tracks and two regions, float (tracks, regions): as many within the
-    gate as can be, then the least sum."""
-    best: tuple[int, float, dict[int, int]] = (0, 0.0, {})
-    tracks, regions = distances.shape
-    options = [[None, *range(regions)] for _ in range(tracks)]
-    combinations: list[list[int | None]] = [[]]
-    for option in options:
-        combinations = [[*start, item] for start in combinations for item in option]
-    for combination in combinations:
-        used = [item for item in combination if item is not None]
-        if len(set(used)) < len(used):
-            continue
-        matched = {t: r for t, r in enumerate(combination) if r is not None and distances[t, r] <= gate}
-        total = float(sum(distances[t, r] for t, r in matched.items()))
-        if (len(matched), -total) > (best[0], -best[1]):
-            best = len(matched), total, matched
-    return best[2]
+from lightgesture.features import births, matching, track_state
+from lightgesture.features.births import PairKey
+from lightgesture.features.evidence import PairEvidence, observe
+from lightgesture.features.matching import Found, Observed
+from lightgesture.features.motion import clip_box, load_filter
+from lightgesture.features.selector_settings import SelectorSettings
+from lightgesture.features.sides import CERTAIN, Basis
+from lightgesture.features.track_settings import TrackSettings
+from lightgesture.features.track_state import TrackState
+from lightgesture.features.types import Box, Candidates, Track
 
 
 class TrackStage:
-    """Candidates of each frame -> at most two tracks, one a side."""
+    """Candidates of each frame -> at most two tracks, one a side.
+
+    Raises lightgesture.features.motion.FilterError where the filter of the settings is not there.
+    """
 
     def __init__(
         self, settings: TrackSettings | None = None, selection: SelectorSettings | None = None
     ) -> None:
         self.settings = settings or TrackSettings()
         self._selection = selection or SelectorSettings()
-        self._next = 1
+        self._filter = load_filter(self.settings.filter)
+        self._certainty: dict[Basis, float] = {
+            CERTAIN: 1.0,
+            "axis": self.settings.axis_certainty,
+            "middle": self._selection.alone_confidence,
+        }
+        self._next_number = 1
+        self._next_key = 1
         self.reset()
 
     def reset(self) -> None:
         """Forget everything, as at the start of another stream; numbers go on."""
-        self._lives: list[_Life] = []
-        self._single: tuple[Box, int] | None = None
+        self._tracks: list[TrackState] = []
+        self._evidence: dict[PairKey, PairEvidence] = {}
+        self._now = 0.0
+        self._whole = -math.inf
         self._time_s: float | None = None
         self._size: tuple[int, int] | None = None
 
-    def process(self, candidates: Candidates, time_s: float) -> tuple[Track, ...]:
-        """Follow the hands into the next frame at `time_s` seconds. Time that stands still or runs back is
-        taken as a step of zero; a long gap or a frame of another size starts anew."""
-        step = 0.0 if self._time_s is None else max(0.0, time_s - self._time_s)
+    def process(self, candidates: Candidates, time_s: float, *, whole: bool = True) -> tuple[Track, ...]:
+        """Follow the hands into the next frame at `time_s` seconds: the tracks, the diver's right hand first.
+
+        whole: whether the whole frame was searched, or only the windows. Time that stands still, runs back or is no
+        number counts as `stalled_step_s`; a long gap or a frame of another size starts anew.
+        """
+        step = self._step(time_s)
         if step > self.settings.longest_step_s or self._size not in (None, candidates.source_size):
             self.reset()
-        self._time_s, self._size = time_s, candidates.source_size
-        self._lives = [self._predicted(life, step) for life in self._lives]
-        chosen = self._choose(candidates)
-        self._lives = self._continue(candidates, chosen, time_s)
-        return tuple(
-            life.track for life in sorted(self._lives, key=lambda life: life.track.side, reverse=True)
-        )
+        self._now += step
+        self._time_s = time_s if math.isfinite(time_s) else self._time_s
+        self._size = candidates.source_size
+        if whole:
+            self._whole = self._now
+        observed = self._look_at(candidates)
+        self._tracks, owners = self._followed(observed, step)
+        self._observe_more(observed, owners)
+        self._gather_evidence(observed, owners, step)
+        self._confirm(candidates)
+        self._end(observed, owners)
+        return self._told(candidates.source_size)
 
-    def _predicted(self, life: _Life, step: float) -> _Life:
-        variance = (self.settings.acceleration * _hand_size(life.coordinates)) ** 2
-        coordinates = tuple(kalman.predict(item, step, variance) for item in life.coordinates)
-        return replace(life, coordinates=coordinates)
+    def predictions(self, time_s: float) -> tuple[Box, ...]:
+        """Where the hands should be in the frame at `time_s`, source pixels; nothing changes.
 
-    def _nearness(self, candidates: Candidates) -> NDArray[np.float32]:
-        """float (n,): 1 at a predicted place and size, towards 0 away from it."""
-        near = np.zeros(len(candidates.regions), np.float32)
-        for index, region in enumerate(candidates.regions):
-            for life in self._lives:
-                squared = self._squared(life, region.box)
-                near[index] = max(near[index], np.exp(-0.5 * squared * 4.0 / self.settings.gate))
-        return near
+        Empty where the whole frame must be searched: without tracks, with one that is not seen just now, with a
+        region under observation, or when the last whole search is too long ago.
+        """
+        step = self._step(time_s)
+        is_alone = len(births.numbered(self._tracks)) == 1
+        longest = self.settings.whole_alone_s if is_alone else self.settings.whole_s
+        is_due = self._now + step - self._whole > longest or step > self.settings.longest_step_s
+        if self._size is None or is_due or any(track.life != "confirmed" for track in self._tracks):
+            return ()
+        moved = [
+            track_state.predict(track.motion, step, self._filter, self.settings) for track in self._tracks
+        ]
+        picture = self._size
+        return tuple(clip_box(*(item.position for item in motion), picture) for motion in moved)
 
-    def _squared(self, life: _Life, box: Box) -> float:
-        return squared_distance(life.coordinates, _measure(box), self.settings.measurement_noise)
+    def explains(self, candidates: Candidates, time_s: float) -> bool:
+        """Whether each confirmed track would find its region among these at `time_s`; nothing changes."""
+        step = self._step(time_s)
+        if candidates.source_size != self._size or step > self.settings.longest_step_s:
+            return False
+        confirmed = [track for track in self._tracks if track.life == "confirmed"]
+        found = self._match(self._predicted(confirmed, step), self._look_at(candidates), step)
+        return len(found) == len(confirmed)
 
-    def _choose(self, candidates: Candidates) -> list[int]:
-        """Numbers of the regions that are believed: a pair, regions at the tracks, or one seen repeatedly."""
-        if not candidates.regions:
-            return []
-        near = self._nearness(candidates)
-        possible = candidates.pairs > 0.0
-        both = np.minimum(near[:, None], near[None, :])
-        found = best_pair(np.where(possible, candidates.pairs + self.settings.memory_gain * both, 0.0))
-        if found is not None and found[1] >= self._selection.pair_score:
-            return list(found[0])
-        kept = self._own(candidates)
-        return kept or self._repeated(candidates)
+    def _step(self, time_s: float) -> float:
+        """Seconds from the last frame to this one, above 0; 0 for the first frame."""
+        if self._size is None:
+            return 0.0
+        step = math.nan if self._time_s is None else time_s - self._time_s
+        return step if math.isfinite(step) and step > 0.0 else self.settings.stalled_step_s
 
-    def _own(self, candidates: Candidates) -> list[int]:
-        """Regions that lie within the gate of a track, the nearest to each."""
-        own: list[int] = []
-        for life in self._lives:
-            gated = [
-                (self._squared(life, region.box), index)
-                for index, region in enumerate(candidates.regions)
-                if region.confidence >= self.settings.keep_score and index not in own
-            ]
-            if gated and min(gated)[0] <= self.settings.gate:
-                own.append(min(gated)[1])
-        return own
+    def _look_at(self, candidates: Candidates) -> Observed:
+        return matching.look_at(candidates, self._selection.pair_score, self.settings.considered)
 
-    def _repeated(self, candidates: Candidates) -> list[int]:
-        """The best region, once it was seen at about the same place for some frames in a row."""
-        best = candidates.regions[0]
-        if best.confidence < self._selection.single_score:
-            self._single = None
-            return []
-        count = 1
-        if self._single is not None:
-            last, seen = self._single
-            apart = np.hypot(*(np.subtract(_measure(best.box)[:2], _measure(last)[:2])))
-            count = seen + 1 if apart < max(best.box[2:]) else 1
-        self._single = best.box, count
-        return [0] if count >= self.settings.birth_frames else []
-
-    def _continue(self, candidates: Candidates, chosen: list[int], time_s: float) -> list[_Life]:
-        """Tracks after this frame: updated, moved on without a region, born or ended."""
-        boxes = [candidates.regions[index].box for index in chosen]
-        distances = np.array([[self._squared(life, box) for box in boxes] for life in self._lives]).reshape(
-            len(self._lives), len(boxes)
-        )
-        matched = assign(distances, self.settings.gate)
-        lives = []
-        for number, life in enumerate(self._lives):
-            if number in matched:
-                region = candidates.regions[chosen[matched[number]]]
-                lives.append(self._updated(life, region, time_s))
-            # A believed pair elsewhere replaces what was followed.
-            elif len(chosen) < 2 and time_s - life.seen_s <= self.settings.lost_s:
-                box = _box(life.coordinates, candidates.source_size)
-                missed = life.track.missed + 1
-                lives.append(
-                    replace(life, track=replace(life.track, box=box, missed=missed, alternatives=()))
-                )
-        fresh = [index for place, index in enumerate(chosen) if place not in matched.values()]
-        return lives + self._born(candidates, fresh, lives, time_s)
-
-    def _updated(self, life: _Life, region: HandRegion, time_s: float) -> _Life:
-        variance = (self.settings.measurement_noise * _hand_size(life.coordinates)) ** 2
-        coordinates = tuple(
-            kalman.update(item, value, variance)
-            for item, value in zip(life.coordinates, _measure(region.box), strict=True)
-        )
-        track = replace(
-            life.track,
-            box=region.box,
-            confidence=region.confidence,
-            missed=0,
-            alternatives=region.alternatives,
-        )
-        return _Life(track, coordinates, time_s)
-
-    def _born(
-        self, candidates: Candidates, fresh: list[int], lives: list[_Life], time_s: float
-    ) -> list[_Life]:
-        """New tracks for believed regions that no track claimed, on the sides that are free."""
-        fresh = sorted(fresh, key=lambda index: _measure(candidates.regions[index].box)[0])
-        taken = {life.track.side for life in lives}
-        sides: list[Side]
-        if len(fresh) == 2 and not taken:
-            sides = ["right", "left"]
-        elif len(fresh) == 1 and len(taken) < 2:
-            free: list[Side] = [side for side in ("right", "left") if side not in taken]
-            guess = side_in_picture(candidates.regions[fresh[0]].box, candidates.source_size[0])
-            sides = [guess] if guess in free else free
-        else:
-            return []
+    def _predicted(self, tracks: list[TrackState], step: float) -> list[TrackState]:
         return [
-            self._new(candidates.regions[index], side, time_s)
-            for index, side in zip(fresh, sides, strict=True)
+            track._replace(motion=track_state.predict(track.motion, step, self._filter, self.settings))
+            for track in tracks
         ]
 
-    def _new(self, region: HandRegion, side: Side, time_s: float) -> _Life:
-        box = region.box
-        size = math.sqrt(box[2] * box[3])
-        position = (self.settings.measurement_noise * size) ** 2
-        coordinates = tuple(kalman.start(value, position, (2.0 * size) ** 2) for value in _measure(box))
-        track = Track(self._next, side, box, region.confidence, 0, region.alternatives)
-        self._next += 1
-        return _Life(track, coordinates, time_s)
+    def _match(self, tracks: list[TrackState], observed: Observed, step: float) -> dict[int, Found]:
+        held = births.held_level(self._tracks, self._evidence)
+        return matching.match_tracks(tracks, observed, held, self._now + step, self.settings, self._selection)
+
+    def _followed(self, observed: Observed, step: float) -> tuple[list[TrackState], dict[int, int]]:
+        """The tracks with or without a region in this frame, and track key -> region."""
+        tracks = self._predicted(self._tracks, step)
+        found = self._match(tracks, observed, 0.0)
+        followed = []
+        for place, track in enumerate(tracks):
+            item = found.get(place)
+            if item is None:
+                others = [other for other in tracks if other.number and other.key != track.key]
+                followed.append(track_state.unseen(track, others, self._now, self.settings))
+                continue
+            region = observed.regions[item.region]
+            if item.leap:
+                followed.append(track_state.leapt(track, region, self._now, step, self.settings))
+            else:
+                followed.append(
+                    track_state.seen(
+                        track, region, item.measured, self._now, step, self._filter, self.settings
+                    )
+                )
+        return followed, {tracks[place].key: item.region for place, item in found.items()}
+
+    def _observe_more(self, observed: Observed, owners: dict[int, int]) -> None:
+        """Keep the regions that may be hands under observation, and take new ones while there is room."""
+        held = births.held_level(self._tracks, self._evidence)
+        worth = births.worth_observing(self._tracks, observed, held, self.settings, self._selection)
+        self._tracks = [
+            track._replace(proved_s=self._now)
+            if not track.number and owners.get(track.key) in worth
+            else track
+            for track in self._tracks
+        ]
+        taken = set(owners.values())
+        room = self.settings.tentative - sum(not track.number for track in self._tracks)
+        for index in [index for index in worth if index not in taken][: max(room, 0)]:
+            track = track_state.begin(self._next_key, observed.regions[index], self._now, self.settings)
+            self._next_key += 1
+            self._tracks.append(track)
+            owners[track.key] = index
+
+    def _gather_evidence(self, observed: Observed, owners: dict[int, int], step: float) -> None:
+        """Scores of all pairs of tracks in this frame, 0 where not both were seen."""
+        least = self._selection.pair_score
+        keys = sorted(track.key for track in self._tracks)
+        gathered = {}
+        for place, first in enumerate(keys):
+            for second in keys[place + 1 :]:
+                known = self._evidence.get((first, second))
+                both = first in owners and second in owners
+                score = observed.together(owners[first], owners[second]) if both else 0.0
+                if known is not None or score >= least:
+                    gathered[first, second] = observe(known, score, self._now, step, least, self.settings)
+        self._evidence = gathered
+
+    def _confirm(self, candidates: Candidates) -> None:
+        """Give numbers and sides to what is believed, and drop what it contradicts."""
+        pair = births.believed_pair(self._tracks, self._evidence, self.settings, self._selection)
+        if pair is not None:
+            sided = births.with_pair_sides(*pair, self.settings)
+            self._keep(births.with_old_number(sided, self._tracks))
+        elif (single := births.believed_single(self._tracks, self.settings, self._selection)) is not None:
+            self._keep((single,))
+        width = candidates.source_size[0]
+        self._tracks = [births.with_lone_side(track, candidates.axis, width) for track in self._tracks]
+
+    def _keep(self, believed: tuple[TrackState, ...]) -> None:
+        """Follow these, and of the others only what is under observation."""
+        kept = []
+        for track in believed:
+            number = track.number
+            if not number:
+                number, self._next_number = self._next_number, self._next_number + 1
+            kept.append(track._replace(number=number, life="confirmed", proved_s=self._now))
+        keys = {track.key for track in kept}
+        self._tracks = kept + [item for item in self._tracks if not item.number and item.key not in keys]
+
+    def _end(self, observed: Observed, owners: dict[int, int]) -> None:
+        present = [owners.get(track.key) for track in births.numbered(self._tracks)]
+        score = 0.0
+        if len(present) == 2 and present[0] is not None and present[1] is not None:
+            score = observed.together(present[0], present[1])
+        held = births.held_level(self._tracks, self._evidence)
+        tracks = births.proved(self._tracks, score, held, self._now, self.settings, self._selection)
+        self._tracks = [track for track in tracks if not track_state.is_over(track, self._now, self.settings)]
+
+    def _told(self, picture: tuple[int, int]) -> tuple[Track, ...]:
+        told = [
+            track_state.to_track(track, picture, self._certainty[track.basis])
+            for track in births.numbered(self._tracks)
+        ]
+        return tuple(sorted(told, key=lambda track: track.side, reverse=True))

@@ -7,11 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.cells import describe
+from lightgesture.features.classical import scored_candidates
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import pairwise_iou
-from lightgesture.features.pairs import COLUMNS
+from lightgesture.features.pairs import COLUMNS, pair_numbers
 from lightgesture.features.proposals import Proposals, propose
-from lightgesture.features.selector import SelectorSettings, pair_numbers, scored_candidates
+from lightgesture.features.selector_settings import CLASSICAL
 from lightgesture.features.trees import Trees, evaluate
 from lightgesture.features.types import Box, Image
 
@@ -44,10 +45,14 @@ KEPT_SHARE = 0.4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoxedPicture:
-    """image: uint8 (h, w, 3), BGR. boxes: outlines of all hands in it, source pixels; may be empty."""
+    """image: uint8 (h, w, 3), BGR. boxes: outlines of all hands in it, source pixels; may be empty. faces: boxes of
+    faces that are known. all_faces: those are all. sources: whose pictures went in."""
 
     image: Image
     boxes: tuple[Box, ...]
+    faces: tuple[Box, ...] = ()
+    all_faces: bool = False
+    sources: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +76,7 @@ def _describe_picture(stage: ColourStage, picture: BoxedPicture) -> _Described |
     return _Described(colour, proposals, describe(colour, proposals), overlaps)
 
 
-def _fit(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Trees:
+def fit_trees(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Trees:
     from sklearn.ensemble import HistGradientBoostingRegressor
 
     model = HistGradientBoostingRegressor(
@@ -127,7 +132,7 @@ def fit_regions(pictures: Iterable[BoxedPicture], seed: int, settings: TreeSetti
         kept = (described.overlaps > MIDDLING_IOU) | (rng.random(len(described.overlaps)) < KEPT_SHARE)
         rows.append(described.numbers[kept])
         targets.append(described.overlaps[kept])
-    return _fit(np.concatenate(rows), np.concatenate(targets), settings, seed)
+    return fit_trees(np.concatenate(rows), np.concatenate(targets), settings, seed)
 
 
 def fit_pairs(
@@ -135,18 +140,18 @@ def fit_pairs(
 ) -> Trees:
     """Trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than those that
     `regions` were fitted on, whose scores would be too good; every hand in them must have its box."""
-    stage, selection = ColourStage(), SelectorSettings()
+    stage = ColourStage()
     rows, targets = [np.zeros((0, COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for picture in pictures:
         described = _describe_picture(stage, picture)
         if described is None:
             continue
         scores = evaluate(regions, described.numbers)
-        kept, items = scored_candidates(described.colour, described.proposals, scores, selection)
+        kept, items = scored_candidates(described.colour, described.proposals, scores, CLASSICAL)
         height, width = described.colour.skin.shape
-        pairs, numbers = pair_numbers(items, (width, height), selection.apart_iou)
+        pairs, numbers = pair_numbers(items, (width, height), None, CLASSICAL.apart_iou)
         if pairs:
             own = described.overlaps[kept]
             rows.append(numbers)
             targets.append(np.array([min(own[i], own[j]) for i, j in pairs], np.float32))
-    return _fit(np.concatenate(rows), np.concatenate(targets), settings, seed)
+    return fit_trees(np.concatenate(rows), np.concatenate(targets), settings, seed)

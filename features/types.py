@@ -22,7 +22,8 @@ class HandRegion:
     """A connected region that may be a hand.
 
     box: outline of the region without the forearm, source pixels.
-    contour: int32 (n, 2), closed outline in source pixels.
+    contour: int32 (n, 2), closed outline in source pixels; of length 0 where nobody has asked for it, because the
+        learned choice finds boxes without outlines (`selector.outlined` draws them).
     side: the diver's own side, or None before the sides are decided.
     confidence: 0 to 1, how sure the selector is that this is a hand.
     alternatives: other extents of the same region, best first: with or without the forearm, at another level
@@ -52,11 +53,13 @@ class Candidates:
     pairs: float32 (n, n), symmetric, 0 to 1: how sure the selector is that both are the hands of one
         person; 0 on the diagonal and for regions that overlap.
     source_size: (width, height) of the frame, pixels.
+    axis: x of the axis of the diver's body or face, source pixels; None where none is seen.
     """
 
     regions: tuple[HandRegion, ...]
     pairs: NDArray[np.float32]
     source_size: tuple[int, int]
+    axis: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +67,14 @@ class Track:
     """One hand followed through the frames.
 
     number: grows by one at each birth, never used twice in a stream.
-    side: the diver's own side, kept for the life of the track.
+    side: the diver's own side, kept for the life of the track; only a guess is put right.
     box: position and size, source pixels: the region's own where it was seen, predicted where not.
     confidence: the selector's confidence in the region that last updated the track, 0 to 1.
-    missed: frames since the last matching region, 0 when seen now.
+    missed: frames since the last matching region, 0 when seen now. Where it is above 0 there may be anything in the
+        box, and no hand may be read from it.
     alternatives: those of the region that was seen now, else none.
+    certainty: 0 to 1, how sure the side is: 1 where both hands were seen together, less for a lone hand. A factor
+        on the confidence of what is read.
     """
 
     number: int
@@ -77,3 +83,4 @@ class Track:
     confidence: float
     missed: int
     alternatives: tuple[Box, ...] = ()
+    certainty: float = 1.0

@@ -10,11 +10,11 @@ from statistics import median, quantiles
 
 import numpy as np
 
-from lightgesture.features.colour import ColourStage
+from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import mirror_box
-from lightgesture.features.selector import RegionStage, choose
+from lightgesture.features.selector import RegionStage, SelectorName, choose
 from lightgesture.features.tracks import TrackStage
-from lightgesture.features.types import Image
+from lightgesture.features.types import Candidates, Image
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.models import load_classifier
 from lightgesture.reading import ReadingStage, Sighting
@@ -62,17 +62,20 @@ class StageClock:
 class Pipeline:
     """Decodes one stream of frames; make another for another stream.
 
-    model: "svm", "cnn" or the path of a model file. hold: consecutive frames that a sign is held, None for the
+    model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
+    see `features.selector`. hold: consecutive frames that a sign is held, None for the
     grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
     selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
     picture of every stage of every frame.
-    Raises lightgesture.models.ModelError, lightgesture.fsm.GrammarError or ValueError: one line each.
+    Raises lightgesture.models.ModelError, lightgesture.features.selector_file.SelectorError,
+    lightgesture.fsm.GrammarError or ValueError: one line each.
     """
 
     def __init__(
         self,
         *,
         model: str | os.PathLike[str] = "svm",
+        selector: SelectorName = "learned",
         hold: int | None = None,
         grammar: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
@@ -81,7 +84,8 @@ class Pipeline:
         debug: PictureSink | None = None,
     ) -> None:
         self._source, self._frames, self._mirrored, self._debug = source, frames, mirrored, debug
-        self._colour, self._regions, self._tracks = ColourStage(), RegionStage(), TrackStage()
+        self._colour, self._regions = ColourStage(), RegionStage(selector)
+        self._tracks = TrackStage(selection=self._regions.settings)
         self._reading = ReadingStage(load_classifier(model))
         self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
         self._clock = StageClock()
@@ -106,12 +110,15 @@ class Pipeline:
         with self._clock.stage("colour"):
             colour = self._colour.process(upright)
         with self._clock.stage("regions"):
-            candidates = self._regions.process(colour)
+            candidates, is_whole = self._candidates(colour, time_s)
         with self._clock.stage("tracks"):
-            tracks = self._tracks.process(candidates, time_s)
+            tracks = self._tracks.process(candidates, time_s, whole=is_whole)
         with self._clock.stage("classify"):
+            # A track that was not seen now has a predicted box, and whatever is in it is no evidence.
             sightings = [
-                Sighting(track.side, (track.box, *track.alternatives), track.number) for track in tracks
+                Sighting(track.side, (track.box, *track.alternatives), track.number, track.certainty)
+                for track in tracks
+                if track.missed == 0
             ]
             hands = self._reading.process(upright, sightings)
         with self._clock.stage("decode"):
@@ -129,6 +136,14 @@ class Pipeline:
         if self._frames:
             records.append(self._frame_record(hands, index, time_s, image_bgr.shape[1]))
         return records + self._count(events)
+
+    def _candidates(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
+        """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
+        what it should."""
+        followed = self._regions.follow(colour, self._tracks.predictions(time_s))
+        if followed is not None and self._tracks.explains(followed, time_s):
+            return followed, False
+        return self._regions.process(colour), True
 
     def finish(self) -> list[Record]:
         """What is pending at the end of the stream, then the summary."""

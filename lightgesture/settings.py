@@ -9,7 +9,7 @@ import difflib
 import os
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic.fields import FieldInfo
@@ -44,6 +44,9 @@ class DecodeSettings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     model: str = _option("svm", "classifier: svm, cnn or a model file", "svm|cnn|PATH", min_length=1)
+    selector: Literal["learned", "classical"] = _option(
+        "learned", "how hands are found: learned (small nets) or classical (no net)", "learned|classical"
+    )
     grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=DECODE)
     hold: int | None = _option(
         None,

@@ -24,8 +24,9 @@ class CompositeSettings:
     size: (width, height) in pixels. hand_height: least and most height of an upright hand over the picture's
     height, drawn evenly in the logarithm. spread: distance of the hands from the body's axis in hand heights.
     lift: height of the hands over the shoulders in hand heights. single, dark, water: shares of pictures with one
-    hand, in a dark room, under water. decoys: most objects of another picture, often red or skin-coloured, that stand
-    about. bare_arms: share with bare forearms. other_hands: share of pictures whose two
+    hand, in a dark room, under water. empty: of the others, those in which nobody shows a hand, in every second because nobody is there. decoys: most objects of
+    another picture, often red or skin-coloured, that stand about. structures: share with poles, gates or boxes such as
+    stand in test pools. lamps: share of dark pictures with a spot of light on something else. bare_arms: share with bare forearms. other_hands: share of pictures whose two
     hands show different signs.
     """
 
@@ -34,6 +35,9 @@ class CompositeSettings:
     spread: tuple[float, float] = (0.8, 2.4)
     lift: tuple[float, float] = (-0.5, 1.6)
     single: float = 0.2
+    empty: float = 0.15
+    structures: float = 0.3
+    lamps: float = 0.4
     dark: float = 0.3
     water: float = 0.45
     bare_arms: float = 0.35
@@ -85,6 +89,25 @@ def _paste(
 def _inside(value: float, size: int, margin: float) -> float:
     """`value` moved to at least `margin` from both ends of 0 to `size`."""
     return min(max(value, margin), max(size - margin, margin))
+
+
+def _paint(rng: np.random.Generator) -> tuple[float, float, float]:
+    """Red, orange, yellow, black, white or grey, BGR, 0 to 1."""
+    colours = ((0.1, 0.12, 0.75), (0.1, 0.4, 0.85), (0.1, 0.75, 0.85), (0.05,) * 3, (0.85,) * 3, (0.4,) * 3)
+    shade = rng.uniform(0.6, 1.15)
+    blue, green, red = (min(value * shade, 1.0) for value in colours[rng.integers(len(colours))])
+    return blue, green, red
+
+
+def lamp_spots(shape: tuple[int, int], rng: np.random.Generator) -> Float:
+    """float32 (h, w), from 1: how much brighter one or two lit places are, tables under lamps and the like."""
+    height, width = shape
+    gain = np.ones((height, width), np.float32)
+    for _ in range(rng.integers(1, 3)):
+        centre = round(rng.uniform(0, width)), round(rng.uniform(0.2, 1.0) * height)
+        axes = round(width * rng.uniform(0.04, 0.2)), round(height * rng.uniform(0.04, 0.2))
+        cv2.ellipse(gain, centre, axes, rng.uniform(-20, 20), 0, 360, rng.uniform(3.0, 15.0), cv2.FILLED)
+    return np.asarray(cv2.GaussianBlur(gain, (0, 0), rng.uniform(1.0, 8.0)), np.float32)
 
 
 def attenuate(image: Float, rng: np.random.Generator) -> Float:
@@ -170,6 +193,43 @@ class Composer:
             thing = texture * (1.0 - tint) + (0.3 + 0.7 * texture) * colour * tint
             canvas += mask[..., None] * (thing - canvas)
 
+    def _put_structures(self, canvas: Float, unit: float, rng: np.random.Generator) -> None:
+        """Poles, gates and boxes in paint colours, as robots find them in test pools; bends look like fists."""
+        if rng.random() >= self._settings.structures:
+            return
+        width, height = self._settings.size
+        thick = max(1, round(unit * rng.uniform(0.1, 0.5)))
+        drawn = canvas.copy()
+        top, bottom = rng.uniform(-0.1, 0.6) * height, rng.uniform(0.5, 1.2) * height
+        feet = np.sort(rng.uniform(0.0, 1.0, rng.integers(1, 4))) * width
+        lean = rng.normal(0.0, 0.06) * height
+        heads = [(round(x + lean), round(top + rng.normal(0.0, 0.04) * height)) for x in feet]
+        for x, head in zip(feet, heads, strict=True):
+            cv2.line(drawn, (round(x), round(bottom)), head, _paint(rng), thick, cv2.LINE_AA)
+            if rng.random() < 0.6:  # a joint of another colour
+                joint = head[0] + round(rng.normal(0.0, 1.0) * thick), head[1] + round(rng.uniform(0, 3) * thick)
+                cv2.line(drawn, head, joint, _paint(rng), round(1.2 * thick), cv2.LINE_AA)
+        if len(heads) > 1 and rng.random() < 0.7:
+            cv2.line(drawn, heads[0], heads[-1], _paint(rng), thick, cv2.LINE_AA)
+        for _ in range(rng.integers(0, 3)):
+            corner = rng.uniform(0.0, 0.9, 2) * (width, height)
+            size = unit * rng.uniform(0.4, 2.0, 2)
+            self._box(drawn, corner, size, rng)
+        canvas += rng.uniform(0.4, 1.0) * (drawn - canvas)
+
+    @staticmethod
+    def _box(
+        canvas: Float, corner: NDArray[np.float64], size: NDArray[np.float64], rng: np.random.Generator
+    ) -> None:
+        """A machine: a dark box with stripes and tubes."""
+        x, y, wide, tall = (round(float(value)) for value in (*corner, *size))
+        body = (rng.uniform(0.02, 0.35) * np.ones(3)).tolist()
+        cv2.rectangle(canvas, (x, y), (x + wide, y + tall), body, cv2.FILLED)
+        for _ in range(rng.integers(0, 5)):
+            ends = rng.uniform(0.0, 1.0, (2, 2)) * size + corner
+            start, end = ((round(float(a)), round(float(b))) for a, b in ends)
+            cv2.line(canvas, start, end, _paint(rng), max(1, tall // 8), cv2.LINE_AA)
+
     def _hands(self, rng: np.random.Generator) -> list[Cutout]:
         """Two hands of one person, image-left first: the second is the mirror image of a left hand."""
         own = self._by_source[self._sources[rng.integers(len(self._sources))]]
@@ -238,10 +298,15 @@ class Composer:
         width, height = settings.size
         unit = float(height * np.exp(rng.uniform(*np.log(settings.hand_height))))
         self._put_decoys(canvas, unit, rng, sources)
+        self._put_structures(canvas, unit, rng)
         axis = rng.uniform(0.3, 0.7) * width
         shoulder = rng.uniform(0.3, 0.85) * height
         hands = self._hands(rng)
-        kept = hands if rng.random() >= settings.single else [None, hands[1]]
+        kept: list[Cutout | None] = [*hands]
+        if rng.random() < settings.single:
+            kept[0] = None
+        elif rng.random() < settings.empty:
+            kept = [None, None]
         lift = rng.uniform(*settings.lift)
         spread = rng.uniform(*settings.spread)
         places = []
@@ -254,7 +319,9 @@ class Composer:
         wrists = [(x, y + 0.35 * unit) for _, (x, y) in chosen]
         opaque = hands[0].alpha > 0.9
         skin = hands[0].image[opaque].mean(axis=0).astype(np.float32) / 255.0
-        face = self._draw_body(person, axis, shoulder, unit, wrists, skin, rng)
+        faces: tuple[Box, ...] = ()
+        if chosen or rng.random() < 0.5:
+            faces = (self._draw_body(person, axis, shoulder, unit, wrists, skin, rng),)
         boxes, tokens = [], []
         for hand, place in chosen:
             box = _paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))
@@ -264,9 +331,9 @@ class Composer:
         if wet:
             person = self._submerge(person, canvas, rng)
         elif dark:
-            person = self._darken(person, canvas, rng)
+            person = self._darken(person, canvas, rng, settings.lamps)
         sources |= {hand.source for hand in hands}
-        return Composite(expose(person, rng), tuple(boxes), tuple(tokens), (face,), frozenset(sources))
+        return Composite(expose(person, rng), tuple(boxes), tuple(tokens), faces, frozenset(sources))
 
     @staticmethod
     def _submerge(person: Float, background: Float, rng: np.random.Generator) -> Float:
@@ -280,11 +347,13 @@ class Composer:
         return np.asarray(background + changed * (tinted - background), np.float32)
 
     @staticmethod
-    def _darken(person: Float, background: Float, rng: np.random.Generator) -> Float:
+    def _darken(person: Float, background: Float, rng: np.random.Generator, lamps: float) -> Float:
         """A person against the light: far darker than lamps and windows, about as dark as the room."""
         changed = (np.abs(person - background).max(axis=2) > 1e-3).astype(np.float32)[..., None]
         light = rng.uniform(0.02, 0.22)
         room = np.power(background, 2.2) * rng.uniform(0.05, 0.3)
+        if rng.random() < lamps:
+            room *= lamp_spots(room.shape[:2], rng)[..., None]
         glow = np.power(background, 2.2) * (background.min(axis=2, keepdims=True) > rng.uniform(0.6, 0.95))
         room = np.maximum(room, glow)
         shaded = np.power(person, 2.2) * light

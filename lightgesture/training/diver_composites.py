@@ -101,6 +101,10 @@ class DiverComposer(Composer):
         look = body_look(hands["left"], is_wet, self._settings.bare_arms, rng)
         if rng.random() < self._settings.single:
             del hands[SIDES[int(rng.integers(2))]]
+        elif rng.random() < self._settings.empty:
+            if rng.random() < 0.5:
+                return Composite(photograph(scenery.picture, rng), (), (), (), frozenset(sources))
+            hands.clear()
         shown = {side: Shown([cutout], [1.0]) for side, cutout in hands.items()}
         picture = scenery.picture
         pasted, cover = draw_diver(picture, state, look, shown, camera, scenery.light, scenery.water)
@@ -143,14 +147,16 @@ class DiverComposer(Composer):
             scenery = self._surroundings.dive(rng) if is_wet else self._surroundings.room(rng)
         else:
             coded = self._background(self._waters if is_wet else self._rooms, rng, sources)
-            self._put_decoys(coded, float(rng.uniform(15.0, 60.0)), rng, sources)
+            unit = float(rng.uniform(15.0, 60.0))
+            self._put_decoys(coded, unit, rng, sources)
+            self._put_structures(coded, unit, rng)
             picture = np.asarray(np.power(coded, np.float32(2.2)), np.float32)
             if is_wet:
                 water = water_of_picture(picture, distance_m, rng)
                 scenery = Scenery(picture, light_under_water(water, rng), water)
             else:
                 scenery = Scenery(picture, light_of_room(picture, rng), None)
-        return darken(scenery, rng) if is_dark else scenery
+        return darken(scenery, rng, self._settings.lamps) if is_dark else scenery
 
     def _pair(self, rng: np.random.Generator) -> dict[str, Cutout]:
         """Two hands of one person by the diver's sides, tokens as the diver shows them."""

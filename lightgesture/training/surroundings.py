@@ -11,6 +11,7 @@ from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.shading import Light
 from lightgesture.synth.textures import periodic_noise
 from lightgesture.synth.water import JERLOV_BGR, Water, make_water
+from lightgesture.training.composites import lamp_spots
 
 Random = np.random.Generator
 RIPPLES_SIZE = 256
@@ -147,11 +148,16 @@ def light_of_room(picture: Float32, rng: Random) -> Light:
     )
 
 
-def darken(scenery: Scenery, rng: Random) -> Scenery:
-    """The same place against the light: windows and lamps stay bright, the rest and the diver are as dark as can be."""
+def darken(scenery: Scenery, rng: Random, lamps: float = 0.0) -> Scenery:
+    """The same place against the light: windows and lamps stay bright, the rest and the diver are as dark as can be.
+
+    lamps: share of places in which something else stands in a spot of light.
+    """
     picture = scenery.picture
     glow = picture.min(axis=2, keepdims=True) > float(rng.uniform(0.35, 0.9))
     dark = picture * min(float(rng.uniform(0.015, 0.07)) / max(float(picture.mean()), 1e-3), 1.0)
+    if rng.random() < lamps:
+        dark = dark * lamp_spots(picture.shape[:2], rng)[..., None]
     level = float(np.exp(rng.uniform(np.log(0.07), np.log(0.4))))
     light = scenery.light
     return Scenery(

@@ -26,9 +26,9 @@ def _picture_with_blob(cast=(1.0, 1.0, 1.0)):
 
 def test_reduced_pictures_have_the_working_area_whatever_the_size():
     for shape in ((480, 640), (1080, 1920), (6000, 8000), (480, 100)):
-        small = reduce_picture(np.zeros((*shape, 3), np.uint8), 19200)
+        small, _ = reduce_picture(np.zeros((*shape, 3), np.uint8), 19200)
         assert small.shape[0] * small.shape[1] == pytest.approx(19200, rel=0.03)
-    assert reduce_picture(np.zeros((1, 1, 3), np.uint8), 19200).shape == (1, 1, 3)
+    assert reduce_picture(np.zeros((1, 1, 3), np.uint8), 19200)[0].shape == (1, 1, 3)
 
 
 @pytest.mark.parametrize("cast", [(1, 1, 1), (1.0, 0.9, 0.35), (0.6, 1.0, 0.4), (0.25, 0.25, 0.25)])

@@ -1,113 +1,227 @@
-"""Two tracks: births, sides, crossing, loss, and clocks that misbehave."""
+"""Two tracks followed through scripted candidates: births, changes of shape, wrong locks, loss and return."""
 
-import numpy as np
 import pytest
 
-from lightgesture.features.tracks import TrackStage, assign
-from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.features.track_settings import TrackSettings
+from lightgesture.features.tracks import TrackStage
 
-SIZE = (640, 480)
 STEP = 1 / 30
 
 
-def _region(x, y, side=80, score=0.6):
-    contour = np.array([[x, y], [x + side, y], [x + side, y + side], [x, y + side]], np.int32)
-    return HandRegion((x, y, side, side), contour, None, score)
+@pytest.fixture
+def hands(region, frame):
+    """Candidates of two hands, the diver's right one at image left."""
+
+    def make(right=(160, 140), left=(460, 140), together=0.8, **size):
+        return frame([region(*right, **size), region(*left, **size)], together)
+
+    return make
 
 
-def _frame(regions, together=0.0, size=SIZE):
-    count = len(regions)
-    pairs = np.full((count, count), together, np.float32)
-    np.fill_diagonal(pairs, 0.0)
-    return Candidates(tuple(regions), pairs, size)
+def _play(stage, frames, start=0.0, step=STEP):
+    """The tracks of each frame."""
+    return [stage.process(candidates, start + index * step) for index, candidates in enumerate(frames)]
 
 
-def _sides(tracks):
-    return {track.side: track.box[0] for track in tracks}
+def _numbers(tracks):
+    return {track.side: track.number for track in tracks}
 
 
-def test_a_believed_pair_is_followed_at_once_with_the_divers_right_at_image_left():
-    tracks = TrackStage().process(_frame([_region(420, 100), _region(120, 110)], together=0.8), 0.0)
-    assert _sides(tracks) == {"right": 120, "left": 420}
-    assert [track.missed for track in tracks] == [0, 0]
+def test_a_pair_that_scores_very_well_is_followed_at_once_with_the_right_hand_at_image_left(hands, sides):
+    tracks = TrackStage().process(hands(), 0.0)
+    assert sides(tracks) == {"right": 160, "left": 460}
+    assert [track.certainty for track in tracks] == [1.0, 1.0]
 
 
-def test_a_pair_below_the_threshold_makes_no_track():
-    assert TrackStage().process(_frame([_region(120, 100), _region(420, 100)], together=0.05), 0.0) == ()
+def test_a_pair_that_scores_fairly_is_followed_once_it_was_seen_for_a_while(hands):
+    counts = [len(tracks) for tracks in _play(TrackStage(), [hands(together=0.3)] * 5)]
+    assert counts == [0, 0, 2, 2, 2]
 
 
-def test_a_region_alone_needs_repeated_evidence():
+def test_a_pair_below_the_threshold_is_never_followed(hands):
+    weak = hands(together=0.15, score=0.45)
+    assert all(tracks == () for tracks in _play(TrackStage(), [weak] * 60))
+
+
+def test_a_pair_that_scores_well_now_and_then_is_not_followed(hands, frame):
+    flicker = [hands(together=0.3, score=0.4) if index % 6 == 0 else frame([]) for index in range(60)]
+    assert all(tracks == () for tracks in _play(TrackStage(), flicker))
+
+
+def test_a_region_alone_needs_repeated_evidence(region, frame):
+    counts = [
+        len(tracks) for tracks in _play(TrackStage(), [frame([region(140, 140, score=0.9)])] * 6)
+    ]
+    assert counts == [0, 0, 0, 1, 1, 1]
+
+
+def test_a_region_that_jumps_about_is_no_repeated_evidence(region, frame):
+    places = [50, 400, 250, 600, 130, 480] * 4
+    shown = [frame([region(x, 140, score=0.9)]) for x in places]
+    assert all(tracks == () for tracks in _play(TrackStage(), shown))
+
+
+def test_a_red_object_that_seldom_looks_like_a_hand_is_never_followed(region, frame):
+    shown = [frame([region(500, 400, score=0.7 if index % 3 == 0 else 0.45)]) for index in range(90)]
+    assert all(tracks == () for tracks in _play(TrackStage(), shown))
+
+
+def test_a_red_object_beside_the_diver_is_not_taken_for_a_hand(region, frame, sides):
+    red = region(560, 400, score=0.95)
+    shown = [
+        frame(
+            [red, region(160 + index, 140, score=0.5), region(400, 150 - index, score=0.5)],
+            {(1, 2): 0.7, (0, 1): 0.35, (0, 2): 0.35},
+        )
+        for index in range(60)
+    ]
+    for index, tracks in enumerate(_play(TrackStage(), shown)):
+        assert sides(tracks) == {"right": 160 + index, "left": 400}
+
+
+def test_hands_replace_a_red_object_that_was_followed_before_they_came(region, frame, sides):
     stage = TrackStage()
-    counts = [len(stage.process(_frame([_region(100, 100, score=0.9)]), index * STEP)) for index in range(4)]
-    assert counts == [0, 0, 1, 1]
+    red = region(560, 400, score=0.9)
+    before = _play(stage, [frame([red])] * 60)
+    assert [track.box[0] for track in before[-1]] == [520]
+    both = frame([red, region(160, 140), region(400, 150)], {(1, 2): 0.7, (0, 1): 0.3, (0, 2): 0.3})
+    after = _play(stage, [both] * 10, start=2.0)
+    assert all(sides(tracks) == {"right": 160, "left": 400} for tracks in after[1:])
 
 
-def test_a_region_that_jumps_about_is_no_repeated_evidence():
+def test_the_partner_of_a_hand_replaces_a_red_object_and_puts_the_side_right(region, frame, sides):
     stage = TrackStage()
-    places = [50, 400, 60, 410, 55, 420]
-    for index, x in enumerate(places):
-        assert stage.process(_frame([_region(x, 100, score=0.9)]), index * STEP) == ()
+    red, hand = region(560, 200, score=0.6), region(400, 150)
+    wrong = _play(stage, [frame([red, hand], 0.4)] * 8)
+    assert sides(wrong[-1]) == {"right": 400, "left": 560}
+    right = frame([red, hand, region(160, 140)], {(0, 1): 0.4, (1, 2): 0.85, (0, 2): 0.3})
+    after = _play(stage, [right] * 10, start=8 * STEP)
+    assert sides(after[-1]) == {"right": 160, "left": 400}
+    # The hand itself was followed all along.
+    assert _numbers(after[-1])["left"] == _numbers(wrong[-1])["right"]
 
 
-def test_hands_that_cross_keep_their_sides_and_numbers():
+def test_a_clearly_better_pair_elsewhere_replaces_what_was_locked(region, frame, sides):
     stage = TrackStage()
-    numbers = set()
-    for index in range(40):
-        right, left = _region(120 + 8 * index, 90), _region(440 - 8 * index, 250)
-        tracks = stage.process(_frame([right, left], together=0.8), index * STEP)
-        numbers |= {track.number for track in tracks}
-    assert _sides(tracks) == {"right": 120 + 8 * 39, "left": 440 - 8 * 39}
-    assert numbers == {1, 2}
+    regions = [region(60, 400), region(580, 410), region(240, 140), region(440, 140)]
+    _play(stage, [frame(regions[:2], 0.55)] * 30)
+    tracks = stage.process(frame(regions, {(0, 1): 0.55, (2, 3): 0.95}), 30 * STEP)
+    assert sides(tracks) == {"right": 240, "left": 440}
 
 
-def test_a_track_bridges_a_short_gap_and_ends_after_a_long_one():
+def test_a_second_pair_about_as_good_such_as_a_mirror_image_does_not_take_turns(region, frame):
     stage = TrackStage()
-    both = _frame([_region(120, 100), _region(420, 100)], together=0.8)
-    stage.process(both, 0.0)
-    gap = stage.process(_frame([]), STEP)
-    assert [track.missed for track in gap] == [1, 1]
-    assert all(track.alternatives == () for track in gap)
-    assert stage.process(_frame([]), 0.9) == ()
-    fresh = stage.process(both, 0.95)
-    assert {track.number for track in fresh} == {3, 4}
+    regions = [region(200, 300), region(440, 300), region(200, 160), region(440, 160)]
+    shown = [frame(regions[:2], 0.7)] * 5
+    shown += [
+        frame(regions, {(0, 1): 0.6 + 0.1 * (index % 2), (2, 3): 0.75 - 0.1 * (index % 2)})
+        for index in range(90)
+    ]
+    played = _play(stage, shown)
+    assert {track.number for tracks in played for track in tracks} == {1, 2}
+    assert all(track.box[1] == 260 for tracks in played for track in tracks)
 
 
-def test_a_better_pair_elsewhere_replaces_what_was_locked():
+def test_memory_keeps_a_pair_whose_score_dips(hands):
     stage = TrackStage()
-    stage.process(_frame([_region(40, 300), _region(560, 310)], together=0.4), 0.0)
-    regions = [_region(40, 300), _region(560, 310), _region(200, 100), _region(400, 100)]
-    pairs = np.zeros((4, 4), np.float32)
-    pairs[0, 1] = pairs[1, 0] = 0.4
-    pairs[2, 3] = pairs[3, 2] = 0.95
-    tracks = stage.process(Candidates(tuple(regions), pairs, SIZE), STEP)
-    assert _sides(tracks) == {"right": 200, "left": 400}
+    _play(stage, [hands()] * 15)
+    dipped = _play(stage, [hands(together=0.1, score=0.3)] * 20, start=15 * STEP)
+    assert all([track.missed for track in tracks] == [0, 0] for tracks in dipped)
 
 
-def test_memory_keeps_a_pair_whose_score_dips():
+def test_what_is_never_again_believed_is_not_followed_for_long(hands):
     stage = TrackStage()
-    regions = [_region(120, 100), _region(420, 100)]
-    stage.process(_frame(regions, together=0.6), 0.0)
-    tracks = stage.process(_frame(regions, together=0.2), STEP)
-    assert [track.missed for track in tracks] == [0, 0]
+    _play(stage, [hands()] * 90)
+    doubted = _play(stage, [hands(together=0.1, score=0.3)] * 90, start=3.0)
+    assert len(doubted[40]) == 2
+    assert doubted[50:] == [()] * 40
 
 
-@pytest.mark.parametrize("times", [[0.0, 0.0, 0.0], [1.0, 0.5, 0.2], [0.0, 50.0, 100.0]])
-def test_time_that_stands_still_runs_back_or_leaps_raises_nothing(times):
+@pytest.mark.parametrize("change", [(60, 60, 0, 0), (90, 140, 8, -20), (50, 120, -6, 12), (120, 90, 10, 0)])
+def test_a_new_sign_changes_the_box_and_not_the_track(region, frame, change):
+    width, height, right, down = change
     stage = TrackStage()
-    for time_s in times:
-        tracks = stage.process(_frame([_region(120, 100), _region(420, 100)], together=0.8), time_s)
-    assert _sides(tracks) == {"right": 120, "left": 420}
+    fist = frame([region(160, 140, 70), region(460, 140, 70)], 0.7)
+    spread = frame(
+        [region(160 + right, 140 + down, width, height), region(460 - right, 140 + down, width, height)], 0.7
+    )
+    played = _play(stage, ([fist] * 12 + [spread] * 12) * 3)
+    assert all(_numbers(tracks) == {"right": 1, "left": 2} for tracks in played)
+    assert all(track.missed == 0 for tracks in played for track in tracks)
 
 
-def test_a_frame_of_another_size_starts_anew():
+def test_the_forearm_that_comes_and_goes_does_not_break_the_track(region, frame):
     stage = TrackStage()
-    stage.process(_frame([_region(120, 100), _region(420, 100)], together=0.8), 0.0)
-    assert stage.process(_frame([], size=(320, 240)), STEP) == ()
+    shown = []
+    for index in range(90):
+        with_arm = index % 5 < 2
+        right = region(160, 180 if with_arm else 140, 70, 160 if with_arm else 80)
+        left = region(460, 140, 70, 80, alternatives=((425, 100, 70, 160),))
+        shown.append(frame([right, left], 0.7))
+    played = _play(stage, shown)
+    assert all(_numbers(tracks) == {"right": 1, "left": 2} for tracks in played)
 
 
-def test_assignment_takes_as_many_as_it_can_then_the_least_sum():
-    distances = np.array([[1.0, 2.0], [1.5, 9.0]])
-    assert assign(distances, gate=13.0) == {0: 1, 1: 0}
-    assert assign(np.array([[50.0, 2.0]]), gate=13.0) == {0: 1}
-    assert assign(np.array([[50.0]]), gate=13.0) == {}
-    assert assign(np.zeros((0, 2)), gate=13.0) == {}
+def test_both_hands_may_leap_to_the_next_sign_as_a_verified_pair(hands, sides):
+    stage = TrackStage()
+    _play(stage, [hands()] * 10)
+    tracks = stage.process(hands((220, 250), (400, 260), width=120), 10 * STEP)
+    assert sides(tracks) == {"right": 220, "left": 400}
+    assert _numbers(tracks) == {"right": 1, "left": 2}
+
+
+def test_a_track_bridges_missed_frames_as_a_prediction(hands, frame):
+    stage = TrackStage()
+    _play(stage, [hands((160 + 4 * index, 140)) for index in range(15)])
+    gap = _play(stage, [frame([])] * 12, start=15 * STEP)
+    assert [[track.missed for track in tracks] for tracks in gap] == [[n, n] for n in range(1, 13)]
+    assert all(track.alternatives == () for tracks in gap for track in tracks)
+    assert 216 <= gap[1][0].box[0] + 40 <= 230
+    back = stage.process(hands((230, 150)), 27 * STEP)
+    assert _numbers(back) == {"right": 1, "left": 2}
+    assert [track.missed for track in back] == [0, 0]
+
+
+def test_tracks_end_when_unseen_for_long_and_numbers_go_on(hands, frame):
+    stage = TrackStage()
+    _play(stage, [hands()] * 30)
+    assert _play(stage, [frame([])] * 30, start=1.0)[-1] == ()
+    assert {track.number for track in stage.process(hands(), 2.0)} == {3, 4}
+
+
+def test_one_hand_leaves_for_a_moment_and_returns_with_its_number_and_side(region, frame, hands):
+    stage = TrackStage()
+    _play(stage, [hands()] * 30)
+    alone = _play(stage, [frame([region(160, 140)])] * 14, start=1.0)
+    assert all(_numbers(tracks) == {"right": 1, "left": 2} for tracks in alone)
+    assert alone[-1][1].missed == 14
+    back = stage.process(hands(left=(430, 180)), 44 * STEP)
+    assert _numbers(back) == {"right": 1, "left": 2}
+    assert [track.missed for track in back] == [0, 0]
+
+
+def test_one_hand_returns_after_long_to_its_side_even_across_the_other(region, frame, hands, sides):
+    stage = TrackStage()
+    _play(stage, [hands()] * 30)
+    alone = _play(stage, [frame([region(160 + 4 * n, 140)]) for n in range(60)], start=1.0)
+    assert _numbers(alone[-1]) == {"right": 1}
+    # The right hand has wandered over; the left one comes back at image left of it.
+    tracks = stage.process(frame([region(400, 140), region(200, 160)], 0.8), 3.0)
+    assert sides(tracks) == {"right": 400, "left": 200}
+    assert _numbers(tracks)["right"] == 1
+
+
+def test_the_output_of_a_frame_of_another_size_starts_anew(hands, frame):
+    stage = TrackStage()
+    stage.process(hands(), 0.0)
+    assert stage.process(frame([], size=(320, 240)), STEP) == ()
+
+
+def test_the_reference_filter_gives_the_same_tracks(hands, frame):
+    pytest.importorskip("filterpy", reason="filterpy comes with the extra dev")
+    shown = [
+        frame([]) if index % 7 == 3 else hands((160 + 5 * index, 140), (460 - 3 * index, 150 + 2 * index))
+        for index in range(30)
+    ]
+    own = _play(TrackStage(), shown)
+    assert _play(TrackStage(TrackSettings(filter="filterpy")), shown) == own

@@ -1,0 +1,110 @@
+"""The classical choice: regions of many thresholds, scored by trees on what the picture looks like there.
+
+No net: channels of the picture averaged over a grid, the outline's numbers and its nearness to the bank of hand
+contours. Selected by `--selector classical`, and the baseline of every table.
+"""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.cells import describe
+from lightgesture.features.colour import ColourMap
+from lightgesture.features.geometry import pairwise_iou, scale_box
+from lightgesture.features.pairs import Candidate, score_pairs
+from lightgesture.features.proposals import Proposals, propose
+from lightgesture.features.selector_file import ClassicalParts
+from lightgesture.features.selector_settings import CLASSICAL, SelectorSettings
+from lightgesture.features.trees import evaluate
+from lightgesture.features.types import Box, Candidates, HandRegion
+from lightgesture.features.wrist import fill_contour
+
+
+def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float) -> Candidate:
+    """The numbers of one proposal that its pairs need."""
+    x, y, width, height = (int(value) for value in proposals.boxes[index])
+    mask = fill_contour(proposals.contours[index], (x, y, width, height))
+    means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
+    return Candidate(
+        box=proposals.boxes[index].astype(np.float32),
+        score=score,
+        strength=float(proposals.levels[index]),
+        colour=np.array(means, np.float32) / np.float32(255.0),
+    )
+
+
+def _best(proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings) -> list[int]:
+    """Proposals of the highest scores that do not overlap a better one."""
+    overlap = pairwise_iou(proposals.boxes, proposals.boxes)
+    kept: list[int] = []
+    for index in np.argsort(-scores, kind="stable"):
+        if scores[index] < settings.least_score:
+            break
+        if all(overlap[index, other] < settings.distinct_iou for other in kept):
+            kept.append(int(index))
+            if len(kept) == settings.candidates:
+                break
+    return kept
+
+
+def scored_candidates(
+    colour: ColourMap, proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings
+) -> tuple[list[int], list[Candidate]]:
+    """Numbers of the proposals that go on to pairing, and what their pairs need."""
+    kept = _best(proposals, scores, settings)
+    return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
+
+
+def _alternatives(
+    proposals: Proposals, scores: NDArray[np.float32], kept: Sequence[int], settings: SelectorSettings
+) -> list[list[int]]:
+    """For each kept proposal the best of the others that overlap it most among the kept."""
+    overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
+    nearest = overlap.argmax(axis=1)
+    order = np.argsort(-scores, kind="stable")
+    near_enough = overlap.max(axis=1) >= settings.alternative_iou
+    return [
+        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][
+            : settings.alternatives
+        ]
+        for place, index in enumerate(kept)
+    ]
+
+
+def _region(
+    colour: ColourMap, proposals: Proposals, index: int, score: float, extents: Sequence[int]
+) -> HandRegion:
+    """A proposal in source pixels."""
+
+    def box_of(number: int) -> Box:
+        x, y, width, height = (int(value) for value in proposals.boxes[number])
+        return scale_box((x, y, width, height), colour.scale, colour.source_size)
+
+    contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
+    confidence = float(np.clip(score, 0.0, 1.0))
+    return HandRegion(box_of(index), contour, None, confidence, tuple(box_of(number) for number in extents))
+
+
+class ClassicalSelector:
+    """Colour map -> candidates with scores, by trees on regions of the skin map."""
+
+    def __init__(self, parts: ClassicalParts, settings: SelectorSettings = CLASSICAL) -> None:
+        self._parts, self._settings = parts, settings
+
+    def process(self, colour: ColourMap) -> Candidates:
+        """Score the regions of one frame. A frame without contrast gives no candidates."""
+        proposals = propose(colour)
+        if not len(proposals):
+            return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
+        scores = evaluate(self._parts.regions, describe(colour, proposals))
+        kept, items = scored_candidates(colour, proposals, scores, self._settings)
+        height, width = colour.picture.shape[:2]
+        together = score_pairs(self._parts.pairs, items, (width, height), None, self._settings.apart_iou)
+        others = _alternatives(proposals, scores, kept, self._settings)
+        regions = tuple(
+            _region(colour, proposals, index, float(scores[index]), extents)
+            for index, extents in zip(kept, others, strict=True)
+        )
+        return Candidates(regions, together, colour.source_size)

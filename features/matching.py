@@ -1,0 +1,192 @@
+"""Tracks and the regions of a frame: which track finds its hand in which region. Pure functions.
+
+First each numbered track looks inside its gate. What fails there is tried again with both hands at once: where a
+verified pair stands near both, the hands have leapt, as they do for a new sign or before a slow camera. What is
+left over belongs to the tentative tracks.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import NamedTuple
+
+from lightgesture.features.association import Match, assign, assign_nearest, gated
+from lightgesture.features.motion import Measured
+from lightgesture.features.selector_settings import SelectorSettings
+from lightgesture.features.track_settings import TrackSettings
+from lightgesture.features.track_state import TrackState, innovation
+from lightgesture.features.types import Candidates, HandRegion
+
+RANKED = 4
+"""Pairs of a frame that are looked at, best first."""
+
+
+class PairScore(NamedTuple):
+    """Two regions of a frame and how well they go together, 0 to 1."""
+
+    score: float
+    first: int
+    second: int
+
+
+class Found(NamedTuple):
+    """What a track found. region: its number in the candidates; measured: its nearest extent; leap: beyond the gate."""
+
+    region: int
+    measured: Measured
+    leap: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Observed:
+    """The part of a frame's candidates that tracks look at.
+
+    regions: by their number, best first. scores: (n, n), of all pairs of numbers up to the greatest of these regions.
+    pairs: verified ones, best first.
+    """
+
+    regions: dict[int, HandRegion]
+    scores: list[list[float]]
+    pairs: tuple[PairScore, ...]
+
+    def together(self, first: int, second: int) -> float:
+        """Score of a pair, 0 to 1; 0 where it is no number."""
+        score = self.scores[first][second]
+        return score if score > 0.0 else 0.0
+
+    def credible(self, least: float) -> dict[int, HandRegion]:
+        """The regions with a confidence of at least `least`."""
+        return {index: region for index, region in self.regions.items() if region.confidence >= least}
+
+
+def look_at(candidates: Candidates, least: float, considered: int) -> Observed:
+    """The sound ones of the best `considered` regions, and their pairs that score at least `least`."""
+    picture = candidates.source_size
+    regions = {
+        index: region
+        for index, region in enumerate(candidates.regions[:considered])
+        if _is_sound(region, picture)
+    }
+    scores: list[list[float]] = candidates.pairs[:considered, :considered].tolist()
+    pairs = [
+        PairScore(scores[first][second], first, second)
+        for first, second in combinations(regions, 2)
+        if scores[first][second] >= least
+    ]
+    return Observed(regions, scores, tuple(sorted(pairs, reverse=True)[:RANKED]))
+
+
+def _is_sound(region: HandRegion, picture: tuple[int, int]) -> bool:
+    """Whether the box is one, lies at least partly in the picture, and has a score."""
+    x, y, width, height = region.box
+    return (
+        width > 0
+        and height > 0
+        and x < picture[0]
+        and y < picture[1]
+        and x + width > 0
+        and y + height > 0
+        and math.isfinite(region.confidence)
+    )
+
+
+def match_tracks(
+    tracks: Sequence[TrackState],
+    observed: Observed,
+    held: float,
+    now: float,
+    settings: TrackSettings,
+    selection: SelectorSettings,
+) -> dict[int, Found]:
+    """Position in `tracks` (predicted to `now` seconds) -> what it found. held: mean score of the pair followed."""
+    numbered = [place for place, track in enumerate(tracks) if track.life != "tentative"]
+    found = _match_numbered(tracks, numbered, observed, now, settings, selection)
+    missing = [place for place in numbered if place not in found]
+    if missing and observed.pairs:
+        found |= _match_leaps(tracks, missing, found, observed, held, settings)
+    tentative = [place for place, track in enumerate(tracks) if track.life == "tentative"]
+    if tentative:
+        found |= _match_tentative(tracks, tentative, found, observed, settings, selection)
+    return found
+
+
+def _match_numbered(
+    tracks: Sequence[TrackState],
+    numbered: Sequence[int],
+    observed: Observed,
+    now: float,
+    settings: TrackSettings,
+    selection: SelectorSettings,
+) -> dict[int, Found]:
+    rows: list[dict[int, Match]] = []
+    for place in numbered:
+        track = tracks[place]
+        is_late = now - track.seen_s > settings.return_s
+        least = selection.single_score * (1.0 if is_late else settings.keep_share)
+        rows.append(gated(innovation(track.motion, settings), observed.credible(least), settings.gate))
+    values = [
+        {index: _worth(match, observed.regions[index], settings) for index, match in row.items()}
+        for row in rows
+    ]
+    assigned = assign(values, observed.together)
+    return {
+        numbered[row]: Found(index, rows[row][index].measured, leap=False) for row, index in assigned.items()
+    }
+
+
+def _worth(match: Match, region: HandRegion, settings: TrackSettings) -> float:
+    """What a match adds: below 0 it is better to miss the hand. Nearness counts from 1 to -1 at the gate, so that a
+    weak region is taken only near by, and two bad matches do not outweigh a good one."""
+    return settings.nearness * (1.0 - 2.0 * match.squared / settings.gate) + region.confidence
+
+
+def _match_leaps(
+    tracks: Sequence[TrackState],
+    missing: Sequence[int],
+    found: dict[int, Found],
+    observed: Observed,
+    held: float,
+    settings: TrackSettings,
+) -> dict[int, Found]:
+    """Leaps of the missing tracks to the best verified pair that is near enough, with what the others found. It must
+    be as good a pair as the hands were before, or another thing beside a hand would be taken for its partner."""
+    taken = {item.region for item in found.values()}
+    expected = [innovation(tracks[place].motion, settings, leap=True) for place in missing]
+    for pair in observed.pairs:
+        ends = {pair.first, pair.second}
+        if not taken <= ends or pair.score < held - settings.margin:
+            continue
+        regions = {index: observed.regions[index] for index in ends - taken}
+        rows = [gated(item, regions, settings.gate) for item in expected]
+        assigned = assign_nearest(
+            (match.squared, row, index)
+            for row, matches in enumerate(rows)
+            for index, match in matches.items()
+        )
+        if len(assigned) == len(missing):
+            return {
+                missing[row]: Found(index, rows[row][index].measured, leap=True)
+                for row, index in assigned.items()
+            }
+    return {}
+
+
+def _match_tentative(
+    tracks: Sequence[TrackState],
+    tentative: Sequence[int],
+    found: dict[int, Found],
+    observed: Observed,
+    settings: TrackSettings,
+    selection: SelectorSettings,
+) -> dict[int, Found]:
+    taken = {item.region for item in found.values()}
+    credible = observed.credible(selection.single_score * settings.keep_share)
+    free = {index: region for index, region in credible.items() if index not in taken}
+    rows = [gated(innovation(tracks[place].motion, settings), free, settings.gate) for place in tentative]
+    assigned = assign_nearest(
+        (match.squared, row, index) for row, matches in enumerate(rows) for index, match in matches.items()
+    )
+    return {
+        tentative[row]: Found(index, rows[row][index].measured, leap=False) for row, index in assigned.items()
+    }

@@ -1,0 +1,153 @@
+"""The layers of a small network as data: what each computes, and the shapes that follow."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+WEIGHTED = ("conv", "depthwise", "dense")
+"""Operations with weights."""
+PASSING = ("concat", "max_pool", "upsample")
+"""Operations that hand values on unchanged, so that their output has the scale of their input."""
+OPERATIONS = (*WEIGHTED, *PASSING, "add", "mean")
+ACTIVATIONS = ("none", "relu", "relu6")
+
+LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, MOST_INPUTS, LARGEST_KERNEL, LARGEST_STRIDE = 4096, 1024, 256, 8, 7, 4
+LARGEST_NAME = 64
+LARGEST_TENSOR = 2**24
+"""Values of one tensor of one picture: bounds the memory that a file may ask for."""
+MOST_TAPS = 2**15
+"""Products summed by one output value: 2**15 of at most 255 * 127 stay below 2**30, half of what int32 holds."""
+LARGEST_MEAN = 2**16
+"""Cells that a mean may take in."""
+
+Shape = tuple[int, int, int]
+"""Height, width, channels; a vector has height and width 1."""
+
+
+class NetworkError(ValueError):
+    """A network that cannot be used: one line with the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One layer.
+
+    op: "conv" (padding as TensorFlow's SAME: at stride 2 the odd row or column goes below or to the right), "depthwise"
+    (likewise, one filter a channel), "dense" (over all of a picture: rows, then columns, then channels), "add" (of two
+    tensors), "concat" (along the channels, of two or more), "upsample" (each cell doubled both ways), "max_pool" (padding as SAME), "mean"
+    (over all of a picture). inputs: names of earlier nodes or of inputs. channels: of the output, for conv and dense.
+    kernel, stride: for conv, depthwise and max_pool. activation: "none", "relu" or "relu6" (0 to 6), of weighted layers
+    and add.
+    """
+
+    name: str
+    op: str
+    inputs: tuple[str, ...]
+    channels: int = 0
+    kernel: int = 1
+    stride: int = 1
+    activation: str = "none"
+
+
+def same_padding(size: int, kernel: int, stride: int) -> tuple[int, int]:
+    """Rows before and after, so that the output has ceil(size / stride) rows."""
+    total = max((-(-size // stride) - 1) * stride + kernel - size, 0)
+    return total // 2, total - total // 2
+
+
+def infer_shapes(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> dict[str, Shape]:
+    """Shape of every tensor for inputs of these shapes. Raises NetworkError."""
+    if len(nodes) > MOST_NODES:
+        raise NetworkError(f"{len(nodes)} nodes are more than {MOST_NODES}")
+    if not 1 <= len(inputs) <= MOST_INPUTS:
+        raise NetworkError(f"{len(inputs)} inputs; 1 to {MOST_INPUTS} are allowed")
+    shapes: dict[str, Shape] = {}
+    for name, shape in inputs.items():
+        _check_name(name)
+        shapes[name] = _checked_shape(name, tuple(shape))
+    for node in nodes:
+        _check_node(node, shapes)
+        shapes[node.name] = _checked_shape(node.name, _output_shape(node, [shapes[name] for name in node.inputs]))
+    return shapes
+
+
+def weight_shape(node: Node, source: Shape) -> tuple[int, ...]:
+    """Shape of a node's weights for an input of the shape `source`."""
+    if node.op == "conv":
+        return node.channels, node.kernel, node.kernel, source[2]
+    if node.op == "depthwise":
+        return 1, node.kernel, node.kernel, source[2]
+    return node.channels, source[0] * source[1] * source[2]
+
+
+def multiply_adds(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> int:
+    """Products that the weighted layers sum for one picture."""
+    shapes = infer_shapes(inputs, nodes)
+    total = 0
+    for node in nodes:
+        if node.op in WEIGHTED:
+            height, width, channels = shapes[node.name]
+            total += height * width * channels * taps(node, shapes[node.inputs[0]])
+    return total
+
+
+def taps(node: Node, source: Shape) -> int:
+    """Products summed by one output value of a weighted layer."""
+    if node.op == "dense":
+        return source[0] * source[1] * source[2]
+    return node.kernel * node.kernel * (source[2] if node.op == "conv" else 1)
+
+
+def _output_shape(node: Node, sources: Sequence[Shape]) -> Shape:
+    height, width, channels = sources[0]
+    if node.op == "dense":
+        return 1, 1, node.channels
+    if node.op == "mean":
+        return 1, 1, channels
+    if node.op == "upsample":
+        return 2 * height, 2 * width, channels
+    if node.op in ("add", "concat"):
+        compared = 3 if node.op == "add" else 2
+        if other := [source for source in sources if source[:compared] != sources[0][:compared]]:
+            raise NetworkError(f"{node.name}: the shapes {sources[0]} and {other[0]} do not fit {node.op}")
+        return height, width, channels if node.op == "add" else sum(source[2] for source in sources)
+    rows, columns = -(-height // node.stride), -(-width // node.stride)
+    return rows, columns, node.channels if node.op == "conv" else channels
+
+
+def _check_name(name: str) -> None:
+    if not (name.isidentifier() and name.isascii() and len(name) <= LARGEST_NAME):
+        raise NetworkError(f"{name[:LARGEST_NAME]!r} is no name of a tensor: letters, digits and _, up to {LARGEST_NAME}")
+
+
+def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
+    _check_name(node.name)
+    if node.op not in OPERATIONS:
+        raise NetworkError(f"{node.name}: unknown operation {node.op!r}; known are {', '.join(OPERATIONS)}")
+    allowed = ACTIVATIONS if node.op in (*WEIGHTED, "add") else ACTIVATIONS[:1]
+    if node.activation not in allowed:
+        raise NetworkError(f"{node.name}: activation {node.activation!r} of {node.op} is not {', '.join(allowed)}")
+    if node.name in known:
+        raise NetworkError(f"{node.name}: the name is used twice")
+    least, most = {"add": (2, 2), "concat": (2, MOST_INPUTS)}.get(node.op, (1, 1))
+    if not least <= len(node.inputs) <= most:
+        raise NetworkError(f"{node.name}: {len(node.inputs)} inputs do not fit {node.op}")
+    if unknown := [name for name in node.inputs if name not in known]:
+        raise NetworkError(f"{node.name}: its input {unknown[0]} does not come before it")
+    if not (1 <= node.kernel <= LARGEST_KERNEL and 1 <= node.stride <= LARGEST_STRIDE):
+        raise NetworkError(f"{node.name}: kernel must be 1 to {LARGEST_KERNEL}, stride 1 to {LARGEST_STRIDE}")
+    source = known[node.inputs[0]]
+    if node.op in WEIGHTED and taps(node, source) > MOST_TAPS:
+        raise NetworkError(f"{node.name}: sums {taps(node, source)} products, more than {MOST_TAPS}")
+    if node.op == "mean" and source[0] * source[1] > LARGEST_MEAN:
+        raise NetworkError(f"{node.name}: a mean of more than {LARGEST_MEAN} cells")
+
+
+def _checked_shape(name: str, shape: tuple[int, ...]) -> Shape:
+    if len(shape) != 3 or not all(1 <= side <= LARGEST_SIDE for side in shape[:2]):
+        raise NetworkError(f"{name}: shape {shape} is not height, width, channels with sides up to {LARGEST_SIDE}")
+    height, width, channels = shape
+    if not 1 <= channels <= MOST_CHANNELS:
+        raise NetworkError(f"{name}: {channels} channels; 1 to {MOST_CHANNELS} are allowed")
+    if height * width * channels > LARGEST_TENSOR:
+        raise NetworkError(f"{name}: shape {shape} holds more than {LARGEST_TENSOR} values")
+    return height, width, channels

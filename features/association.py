@@ -59,7 +59,7 @@ def squared_distance(innovation: Innovation, measured: Measured) -> float:
 def nearest_extent(innovation: Innovation, region: HandRegion, gate: float) -> Match | None:
     """The extent of a region that is nearest to what is expected, None if none is inside the gate.
 
-    If the region's box is further off than three times the gate's radius, the alternatives are not tried: they overlap it.
+    Beyond three times the gate's radius from the region's box the alternatives are not tried: they overlap it.
     """
     best = measure(region.box)
     least = squared_distance(innovation, best)

@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 from lightgesture.features.association import Match, assign, assign_nearest, gated
-from lightgesture.features.motion import Measured
+from lightgesture.features.motion import Measured, measure, meets
 from lightgesture.features.selector_settings import SelectorSettings
 from lightgesture.features.track_settings import TrackSettings
 from lightgesture.features.track_state import TrackState, innovation
@@ -119,20 +119,39 @@ def _match_numbered(
     settings: TrackSettings,
     selection: SelectorSettings,
 ) -> dict[int, Found]:
+    both = [tracks[place] for place in numbered]
+    # What is seen where hands meet may be both of them as one thing, which tells little of either.
+    is_met = len(both) == 2 and meets(both[0].motion, both[1].motion)
     rows: list[dict[int, Match]] = []
-    for place in numbered:
-        track = tracks[place]
+    for track in both:
         is_late = now - track.seen_s > settings.return_s
-        least = selection.single_score * (1.0 if is_late else settings.keep_share)
+        least = selection.single_score * (1.0 if is_late or is_met else settings.keep_share)
         rows.append(gated(innovation(track.motion, settings), observed.credible(least), settings.gate))
     values = [
         {index: _worth(match, observed.regions[index], settings) for index, match in row.items()}
         for row in rows
     ]
-    assigned = assign(values, observed.together)
+    assigned = assign(
+        values,
+        lambda first, second: (
+            observed.together(first, second) + _order(both, first, second, observed, settings)
+        ),
+    )
     return {
         numbered[row]: Found(index, rows[row][index].measured, leap=False) for row, index in assigned.items()
     }
+
+
+def _order(
+    tracks: Sequence[TrackState], first: int, second: int, observed: Observed, settings: TrackSettings
+) -> float:
+    """What it adds that hands which met, one behind the other, come back in the order along x in which they went."""
+    one, other = tracks
+    if not (one.missed or other.missed) or not meets(one.motion, other.motion):
+        return 0.0
+    went = other.seen_x - one.seen_x
+    came = measure(observed.regions[second].box)[0] - measure(observed.regions[first].box)[0]
+    return settings.order if went * came > 0.0 else 0.0
 
 
 def _worth(match: Match, region: HandRegion, settings: TrackSettings) -> float:

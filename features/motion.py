@@ -192,3 +192,9 @@ def clip_box(x: float, y: float, width: float, height: float, picture: tuple[int
     right, bottom = round(x + width / 2), round(y + height / 2)
     left, top = min(max(left, 0), picture[0] - 1), min(max(top, 0), picture[1] - 1)
     return left, top, max(1, min(right, picture[0]) - left), max(1, min(bottom, picture[1]) - top)
+
+
+def box_of(state: BoxState, picture: tuple[int, int]) -> Box:
+    """The box of a state, source pixels, clipped to a picture of (width, height)."""
+    x, y, width, height = state
+    return clip_box(x.position, y.position, width.position, height.position, picture)

@@ -24,10 +24,12 @@ class TrackSettings:
         99th percentile of chi-squared with four degrees of freedom.
     nearness: what a region at the predicted place is worth beside its score and its pair's, 0.2 to 2. Larger keeps to
         what was seen before, smaller to what looks most like a hand.
+    order: what it is worth, on the same scale, that hands of which one went behind the other come back in the order in
+        which they met, 0 to 1. Larger takes them for hands that parted again, smaller for hands that crossed.
     leap_noise: standard deviation of the centre and of the size, sizes, 0.2 to 1, by which both hands may leap from
         one frame to the next where the regions are a verified pair: a new sign, a slow camera.
     keep_share: least score of a region that a track takes as its own, as a share of the selector's single score,
-        0 to 1. Lower bridges weak frames, higher leaves a hand sooner.
+        0 to 1. Lower bridges weak frames, higher leaves a hand sooner. Where two hands meet, it is the whole of it.
     considered: most regions of a frame that are looked at, best first, 2 to 64; bounds the time.
 
     Birth, seconds and frames both:
@@ -44,6 +46,7 @@ class TrackSettings:
 
     Loss:
     coast_s: for so long an unseen hand is taken to go on as it moved, then to rest, 0 to 0.5.
+    meet_s: the same for a hand that meets the other one and may pass behind it, 0.1 to 1.
     return_s: for so long a missing hand may return with a region that is only just good enough; later the region
         must be believed on its own or with its partner.
     lost_s: seconds without a region after which a track ends, its number and side with it.
@@ -70,13 +73,14 @@ class TrackSettings:
     size_speed: float = 0.5
     gate: float = 13.3
     nearness: float = 0.7
+    order: float = 0.3
     leap_noise: float = 0.45
     keep_share: float = 0.4
     considered: int = 24
     sure_share: float = 0.4
     pair_s: float = 0.05
     pair_frames: int = 2
-    single_s: float = 0.1
+    single_s: float = 0.2
     single_frames: int = 3
     margin: float = 0.15
     replace_s: float = 0.1
@@ -85,6 +89,7 @@ class TrackSettings:
     tentative: int = 6
     tentative_s: float = 0.15
     coast_s: float = 0.1
+    meet_s: float = 0.35
     return_s: float = 0.2
     lost_s: float = 0.6
     doubt_s: float = 1.5

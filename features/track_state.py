@@ -14,7 +14,7 @@ from lightgesture.features.motion import (
     BoxFilter,
     BoxState,
     Measured,
-    clip_box,
+    box_of,
     hand_size,
     measure,
     meets,
@@ -62,6 +62,11 @@ class TrackState(NamedTuple):
     def x(self) -> float:
         """Filtered x of the centre, source pixels."""
         return self.motion[0].position
+
+    @property
+    def seen_x(self) -> float:
+        """x of the centre of the last region, source pixels."""
+        return self.box[0] + self.box[2] / 2
 
 
 def begin(key: int, region: HandRegion, now: float, settings: TrackSettings) -> TrackState:
@@ -149,15 +154,19 @@ def _with_region(
 
 
 def unseen(
-    track: TrackState, others: Iterable[TrackState], now: float, settings: TrackSettings
+    track: TrackState, others: Iterable[TrackState], now: float, step: float, settings: TrackSettings
 ) -> TrackState:
     """The track after a frame without its region. Its speed is believed for a moment only: a hand that goes on being
-    unseen has more likely stopped or turned than flown away. But a hand that meets another one goes on behind it."""
-    life: Life = "tentative" if track.life == "tentative" else "lost"
+    unseen has more likely stopped or turned than flown away; for longer where it meets another hand, behind which it
+    may pass. To what is under observation a frame without it counts as one that scores nothing."""
     motion = track.motion
-    if now - track.seen_s > settings.coast_s and not any(meets(motion, item.motion) for item in others):
+    is_met = any(meets(motion, other.motion) for other in others)
+    if now - track.seen_s > (settings.meet_s if is_met else settings.coast_s):
         motion = stop(motion)
-    return track._replace(life=life, motion=motion, missed=track.missed + 1)
+    if track.life == "tentative":
+        level = blend(track.level, 0.0, step, settings.memory_s)
+        return track._replace(motion=motion, level=level, missed=track.missed + 1)
+    return track._replace(life="lost", motion=motion, missed=track.missed + 1)
 
 
 def trust_s(track: TrackState, longest: float, settings: TrackSettings) -> float:
@@ -178,6 +187,5 @@ def to_track(track: TrackState, picture: tuple[int, int], certainty: float) -> T
     """What others are told of a confirmed or lost track; picture: (width, height), pixels."""
     box, alternatives = track.box, track.alternatives
     if track.missed:
-        x, y, width, height = (item.position for item in track.motion)
-        box, alternatives = clip_box(x, y, width, height, picture), ()
+        box, alternatives = box_of(track.motion, picture), ()
     return Track(track.number, track.side, box, track.confidence, track.missed, alternatives, certainty)

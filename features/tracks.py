@@ -13,7 +13,7 @@ from lightgesture.features import births, matching, track_state
 from lightgesture.features.births import PairKey
 from lightgesture.features.evidence import PairEvidence, observe
 from lightgesture.features.matching import Found, Observed
-from lightgesture.features.motion import clip_box, load_filter
+from lightgesture.features.motion import box_of, load_filter
 from lightgesture.features.selector_settings import SelectorSettings
 from lightgesture.features.sides import CERTAIN, Basis
 from lightgesture.features.track_settings import TrackSettings
@@ -89,7 +89,7 @@ class TrackStage:
             track_state.predict(track.motion, step, self._filter, self.settings) for track in self._tracks
         ]
         picture = self._size
-        return tuple(clip_box(*(item.position for item in motion), picture) for motion in moved)
+        return tuple(box_of(motion, picture) for motion in moved)
 
     def explains(self, candidates: Candidates, time_s: float) -> bool:
         """Whether each confirmed track would find its region among these at `time_s`; nothing changes."""
@@ -129,7 +129,7 @@ class TrackStage:
             item = found.get(place)
             if item is None:
                 others = [other for other in tracks if other.number and other.key != track.key]
-                followed.append(track_state.unseen(track, others, self._now, self.settings))
+                followed.append(track_state.unseen(track, others, self._now, step, self.settings))
                 continue
             region = observed.regions[item.region]
             if item.leap:

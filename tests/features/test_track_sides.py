@@ -58,13 +58,13 @@ def test_hands_that_touch_and_part_keep_sides_and_numbers(region, frame, sides):
 
 
 def test_a_lone_hand_is_sided_by_the_middle_at_lowered_confidence(region, frame):
-    tracks = _play(TrackStage(), [frame([region(420, 140, score=0.8)])] * 5)[-1]
+    tracks = _play(TrackStage(), [frame([region(420, 140, score=0.8)])] * 10)[-1]
     assert [(track.side, track.certainty) for track in tracks] == [("left", 0.8)]
 
 
 def test_the_axis_of_the_body_decides_where_it_is_seen(region, frame):
     hand = region(420, 140, score=0.8)
-    tracks = _play(TrackStage(), [frame([hand], axis=500.0)] * 5)[-1]
+    tracks = _play(TrackStage(), [frame([hand], axis=500.0)] * 10)[-1]
     assert [(track.side, track.certainty) for track in tracks] == [("right", 0.9)]
 
 

@@ -1,0 +1,81 @@
+"""What holds for any candidates at any time."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightgesture.features.evidence import blend, is_verified, observe
+from lightgesture.features.track_settings import TrackSettings
+from lightgesture.features.tracks import TrackStage
+from lightgesture.features.types import Candidates, HandRegion
+
+PICTURE = (320, 240)
+SCORE = st.floats(0.0, 1.0, width=32)
+BOX = st.tuples(st.integers(-60, 330), st.integers(-60, 250), st.integers(-5, 120), st.integers(-5, 120))
+TIME = st.one_of(st.floats(0.0, 3.0), st.sampled_from([math.nan, math.inf, -1.0, 1e12]))
+OUTLINE = np.zeros((3, 2), np.int32)
+
+
+@st.composite
+def candidates(draw):
+    boxes = draw(st.lists(st.tuples(BOX, SCORE, st.lists(BOX, max_size=2)), max_size=6))
+    regions = tuple(HandRegion(box, OUTLINE, None, score, tuple(rest)) for box, score, rest in boxes)
+    count = len(regions)
+    scores = draw(st.lists(SCORE, min_size=count * count, max_size=count * count))
+    pairs = np.triu(np.array(scores, np.float32).reshape(count, count), 1)
+    face = draw(st.none() | st.tuples(st.floats(0, 320), st.floats(0, 240)))
+    return Candidates(regions, pairs + pairs.T, PICTURE, face)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.tuples(candidates(), TIME, st.booleans()), max_size=25))
+def test_at_most_one_track_a_side_and_no_number_comes_back(frames):
+    stage = TrackStage()
+    ended: set[int] = set()
+    present: set[int] = set()
+    for shown, time_s, whole in frames:
+        assert len(stage.predictions(time_s)) <= 2
+        stage.explains(shown, time_s)
+        tracks = stage.process(shown, time_s, whole=whole)
+        assert len({track.side for track in tracks}) == len(tracks) <= 2
+        numbers = {track.number for track in tracks}
+        assert len(numbers) == len(tracks)
+        ended |= present - numbers
+        assert not numbers & ended
+        present = numbers
+        for track in tracks:
+            assert 0.0 < track.certainty <= 1.0
+            assert track.missed >= 0
+            if track.missed:
+                x, y, width, height = track.box
+                assert 0 <= x < x + width <= PICTURE[0]
+                assert 0 <= y < y + height <= PICTURE[1]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(candidates(), st.floats(0.0, 0.4)), max_size=25))
+def test_the_same_frames_give_the_same_tracks(frames):
+    first, second = TrackStage(), TrackStage()
+    time_s = 0.0
+    for shown, step in frames:
+        time_s += step
+        assert first.process(shown, time_s) == second.process(shown, time_s)
+
+
+@given(st.lists(st.floats(0.0, 0.1999), min_size=1, max_size=40), st.floats(0.001, 0.3))
+def test_scores_below_the_threshold_never_verify_a_pair(scores, step):
+    known = None
+    for index, score in enumerate(scores):
+        known = observe(known, score, index * step, step, 0.2, TrackSettings())
+        assert not is_verified(known, 0.2, TrackSettings())
+
+
+@given(SCORE, SCORE, st.floats(0.0, 5.0), st.integers(1, 9))
+def test_a_mean_over_time_does_not_depend_on_how_the_time_is_divided(level, value, seconds, parts):
+    blended = level
+    for _ in range(parts):
+        blended = blend(blended, value, seconds / parts, 0.2)
+    assert math.isclose(blended, blend(level, value, seconds, 0.2), rel_tol=1e-9, abs_tol=1e-12)
+    assert min(level, value) - 1e-9 <= blended <= max(level, value) + 1e-9

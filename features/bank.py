@@ -99,7 +99,9 @@ def build_bank(
     centres, owner = [], []
     for index, (name, contours) in enumerate(contours_by_class.items()):
         if not contours or per_class < 1:
-            raise ValueError(f"class {name!r} has {len(contours)} outlines for {per_class} centres; give one at least")
+            raise ValueError(
+                f"class {name!r} has {len(contours)} outlines for {per_class} centres; give one at least"
+            )
         described = describe_outlines(contours, settings)
         count = per_class * (OTHER_TIMES if name == OTHER else 1)
         found = k_means(np.concatenate([described, mirrored(described)]), count, rng)

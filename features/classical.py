@@ -10,16 +10,34 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.cells import describe
+from lightgesture.features import cells
+from lightgesture.features.bank import OTHER, Bank, bank_distances, hand_proximity
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.geometry import pairwise_iou, scale_box
 from lightgesture.features.pairs import Candidate, score_pairs
 from lightgesture.features.proposals import Proposals, propose
-from lightgesture.features.selector_file import ClassicalParts
+from lightgesture.features.selector_file import BANK_NUMBERS, ClassicalParts
 from lightgesture.features.selector_settings import CLASSICAL, SelectorSettings
 from lightgesture.features.trees import evaluate
 from lightgesture.features.types import Box, Candidates, HandRegion
 from lightgesture.features.wrist import fill_contour
+
+Float = NDArray[np.float32]
+
+
+COLUMNS = cells.COLUMNS + BANK_NUMBERS
+"""Numbers of one region."""
+
+
+def describe_regions(colour: ColourMap, proposals: Proposals, bank: Bank) -> Float:
+    """float32 (n, COLUMNS): what the picture looks like there, then how near the outline is to the bank's hands, and
+    how much nearer than to other things."""
+    if not len(proposals):
+        return np.zeros((0, COLUMNS), np.float32)
+    distances = bank_distances(proposals.contours, bank)
+    hands = np.delete(distances, bank.classes.index(OTHER), axis=1).min(axis=1)
+    numbers = cells.describe(colour, proposals), hands, hand_proximity(distances, bank)
+    return np.column_stack(numbers).astype(np.float32)
 
 
 def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float) -> Candidate:
@@ -61,6 +79,8 @@ def _alternatives(
     proposals: Proposals, scores: NDArray[np.float32], kept: Sequence[int], settings: SelectorSettings
 ) -> list[list[int]]:
     """For each kept proposal the best of the others that overlap it most among the kept."""
+    if not kept:
+        return []
     overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
     nearest = overlap.argmax(axis=1)
     order = np.argsort(-scores, kind="stable")
@@ -98,7 +118,7 @@ class ClassicalSelector:
         proposals = propose(colour)
         if not len(proposals):
             return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
-        scores = evaluate(self._parts.regions, describe(colour, proposals))
+        scores = evaluate(self._parts.regions, describe_regions(colour, proposals, self._parts.bank))
         kept, items = scored_candidates(colour, proposals, scores, self._settings)
         height, width = colour.picture.shape[:2]
         together = score_pairs(self._parts.pairs, items, (width, height), None, self._settings.apart_iou)

@@ -65,9 +65,9 @@ class LearnedSelector:
         scores = evaluate(self._places, describe_places(peaks, refined, size))
         items = candidates_of(colour, peaks, refined, scores, self._settings)
         together = score_pairs(self._pairs, items, size, peaks.face, self._settings.apart_iou)
-        axis = None if peaks.face is None else peaks.face[0] * colour.scale[0]
+        face = None if peaks.face is None else scaled_point(peaks.face, colour.scale)
         return Candidates(
-            tuple(region(colour, item.box, item.score) for item in items), together, colour.source_size, axis
+            tuple(region(colour, item.box, item.score) for item in items), together, colour.source_size, face
         )
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates:
@@ -112,6 +112,11 @@ def distinct(boxes: Float, scores: Float, settings: SelectorSettings) -> list[in
         if all(overlap[index, other] < settings.distinct_iou for other in kept):
             kept.append(int(index))
     return kept[: settings.candidates]
+
+
+def scaled_point(point: tuple[float, float], scale: tuple[float, float]) -> tuple[float, float]:
+    """A point of the working picture in source pixels."""
+    return point[0] * scale[0], point[1] * scale[1]
 
 
 def mean_colour(colour: ColourMap, box: Float) -> Float:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features import cells, choice, pairs
+from lightgesture.features.bank import Bank
+from lightgesture.features.bank_file import bank_arrays, bank_from
 from lightgesture.features.network import IntegerNetwork, NetworkError
 from lightgesture.features.network_file import network_arrays, network_from
 from lightgesture.features.trees import Trees
@@ -19,6 +21,8 @@ VERSION = 2
 LARGEST_FILE = 8 * 1024 * 1024
 """Bytes; a file beyond this is refused unread."""
 BUNDLED = Path(__file__).parent / "data" / "selector.npz"
+BANK_NUMBERS = 2
+"""Numbers of a region that come from the bank of outlines."""
 REMEDY = "make it again with: lightgesture train regions"
 
 Parts = TypeVar("Parts")
@@ -33,10 +37,11 @@ class SelectorError(ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassicalParts:
-    """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both."""
+    """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both. bank: outlines of hands."""
 
     regions: Trees
     pairs: Trees
+    bank: Bank
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +70,7 @@ def save_selector(path: Path, selector: Selector) -> None:
         "version": np.array(VERSION, np.int32),
         **_tree_arrays("regions", classical.regions),
         **_tree_arrays("region_pairs", classical.pairs),
+        **bank_arrays("bank", classical.bank),
         **_tree_arrays("places", learned.places),
         **_tree_arrays("place_pairs", learned.pairs),
         **network_arrays("locator", learned.locator),
@@ -81,7 +87,9 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
 
     def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
         return ClassicalParts(
-            _trees(arrays, "regions", cells.COLUMNS), _trees(arrays, "region_pairs", pairs.COLUMNS)
+            _trees(arrays, "regions", cells.COLUMNS + BANK_NUMBERS),
+            _trees(arrays, "region_pairs", pairs.COLUMNS),
+            bank_from(arrays, "bank"),
         )
 
     return _read(path, read)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.cells import describe
-from lightgesture.features.classical import scored_candidates
+from lightgesture.features.bank import Bank
+from lightgesture.features.classical import describe_regions, scored_candidates
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.pairs import COLUMNS, pair_numbers
@@ -63,7 +63,7 @@ class _Described:
     overlaps: Float
 
 
-def _describe_picture(stage: ColourStage, picture: BoxedPicture) -> _Described | None:
+def _describe_picture(stage: ColourStage, picture: BoxedPicture, bank: Bank) -> _Described | None:
     colour = stage.process(picture.image)
     proposals = propose(colour)
     if not len(proposals):
@@ -73,7 +73,7 @@ def _describe_picture(stage: ColourStage, picture: BoxedPicture) -> _Described |
     if picture.boxes:
         boxes = np.array(picture.boxes, np.float64)
         overlaps = pairwise_iou(proposals.boxes * scale, boxes).max(axis=1).astype(np.float32)
-    return _Described(colour, proposals, describe(colour, proposals), overlaps)
+    return _Described(colour, proposals, describe_regions(colour, proposals, bank), overlaps)
 
 
 def fit_trees(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Trees:
@@ -121,12 +121,14 @@ def export_trees(model: object) -> Trees:
     return Trees(feature, threshold, left, right, value, base, depth)
 
 
-def fit_regions(pictures: Iterable[BoxedPicture], seed: int, settings: TreeSettings = REGION_TREES) -> Trees:
+def fit_regions(
+    pictures: Iterable[BoxedPicture], bank: Bank, seed: int, settings: TreeSettings = REGION_TREES
+) -> Trees:
     """Trees that predict the IoU of a proposal with the best hand box."""
     stage, rng = ColourStage(), np.random.default_rng(seed)
     rows, targets = [], []
     for picture in pictures:
-        described = _describe_picture(stage, picture)
+        described = _describe_picture(stage, picture, bank)
         if described is None:
             continue
         kept = (described.overlaps > MIDDLING_IOU) | (rng.random(len(described.overlaps)) < KEPT_SHARE)
@@ -136,14 +138,18 @@ def fit_regions(pictures: Iterable[BoxedPicture], seed: int, settings: TreeSetti
 
 
 def fit_pairs(
-    pictures: Iterable[BoxedPicture], regions: Trees, seed: int, settings: TreeSettings = PAIR_TREES
+    pictures: Iterable[BoxedPicture],
+    regions: Trees,
+    bank: Bank,
+    seed: int,
+    settings: TreeSettings = PAIR_TREES,
 ) -> Trees:
     """Trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than those that
     `regions` were fitted on, whose scores would be too good; every hand in them must have its box."""
     stage = ColourStage()
     rows, targets = [np.zeros((0, COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for picture in pictures:
-        described = _describe_picture(stage, picture)
+        described = _describe_picture(stage, picture, bank)
         if described is None:
             continue
         scores = evaluate(regions, described.numbers)

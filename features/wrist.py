@@ -69,7 +69,9 @@ def arm_direction(
     if moments["m00"] < max(settings.least_remainder * cv2.countNonZero(mask), 1.0):
         return None
     towards = np.array([moments["m10"], moments["m01"]]) / moments["m00"] - np.array(centre) + (0, top)
-    return np.asarray(towards / np.linalg.norm(towards), np.float64)
+    length = float(np.hypot(*towards))
+    # Rests on both sides of a palm may balance each other: then no arm leaves it.
+    return np.asarray(towards / length, np.float64) if length > 0.0 else None
 
 
 def cut_forearm(contour: NDArray[np.int32], box: Box, settings: WristSettings) -> NDArray[np.int32] | None:

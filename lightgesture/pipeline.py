@@ -17,7 +17,7 @@ from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Candidates, Image
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.models import load_classifier
-from lightgesture.reading import ReadingStage, Sighting
+from lightgesture.reading import ReadingStage, Sighting, is_crowded
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
 from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.threads import OneBlasThread
@@ -115,10 +115,16 @@ class Pipeline:
             tracks = self._tracks.process(candidates, time_s, whole=is_whole)
         with self._clock.stage("classify"):
             # A track that was not seen now has a predicted box, and whatever is in it is no evidence.
+            seen = [track for track in tracks if track.missed == 0]
             sightings = [
-                Sighting(track.side, (track.box, *track.alternatives), track.number, track.certainty)
-                for track in tracks
-                if track.missed == 0
+                Sighting(
+                    track.side,
+                    (track.box, *track.alternatives),
+                    track.number,
+                    track.certainty,
+                    is_crowded(track.box, [one.box for one in seen if one is not track], candidates.face),
+                )
+                for track in seen
             ]
             hands = self._reading.process(upright, sightings)
         with self._clock.stage("decode"):
@@ -173,7 +179,13 @@ class Pipeline:
         chosen = choose(candidates, settings)
         certainty = settings.alone_confidence if len(chosen) == 1 else 1.0
         sightings = [
-            Sighting(region.side or "right", (region.box, *region.alternatives), None, certainty)
+            Sighting(
+                region.side or "right",
+                (region.box, *region.alternatives),
+                None,
+                certainty,
+                is_crowded(region.box, [one.box for one in chosen if one is not region], candidates.face),
+            )
             for region in chosen
         ]
         hands = self._reading.process(upright, sightings)

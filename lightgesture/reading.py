@@ -19,10 +19,15 @@ class ReadingSettings:
         wrong; what stays below is `low_confidence`.
     edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
         classifier is not sure.
+    covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
+    doubtful_factor: factor on the confidence of a hand that is cut by the edge or crowded, 0.7 to 1: what is read there
+        must be clearer.
     """
 
     token_probability: float = 0.7
     edge_share: float = 0.02
+    covered_share: float = 0.25
+    doubtful_factor: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +35,32 @@ class Sighting:
     """A hand to be read.
 
     boxes: its extents, source pixels, the likeliest first; at least one. track: number, None in single pictures.
-    certainty: factor on the confidence, 1 where the side is known.
+    certainty: factor on the confidence, 1 where the side is known. is_crowded: before a face, or another hand is in its
+    box.
     """
 
     side: Side
     boxes: tuple[Box, ...]
     track: int | None
     certainty: float = 1.0
+    is_crowded: bool = False
+
+
+def is_crowded(
+    box: Box, others: Sequence[Box], face: tuple[float, float] | None, settings: ReadingSettings | None = None
+) -> bool:
+    """Whether something skin-coloured is behind or before a hand: the middle of the face lies in its box, or
+    another hand covers a share of it."""
+    settings = settings or ReadingSettings()
+    x, y, width, height = box
+    if face is not None and x <= face[0] < x + width and y <= face[1] < y + height:
+        return True
+    for left, top, wide, tall in others:
+        across = min(x + width, left + wide) - max(x, left)
+        down = min(y + height, top + tall) - max(y, top)
+        if min(across, down) > 0 and across * down > settings.covered_share * width * height:
+            return True
+    return False
 
 
 def _touches_edge(box: Box, size: tuple[int, int], share: float) -> bool:
@@ -48,19 +72,26 @@ def _touches_edge(box: Box, size: tuple[int, int], share: float) -> bool:
 
 
 def read_token(
-    probabilities: NDArray[np.float32], classes: Sequence[str], at_edge: bool, settings: ReadingSettings
+    probabilities: NDArray[np.float32],
+    classes: Sequence[str],
+    at_edge: bool,
+    crowded: bool,
+    settings: ReadingSettings,
 ) -> tuple[str | None, float, str | None]:
     """Token, confidence and reason of one hand from its row of probabilities (classes,).
 
     The token is None where `none` is most likely ("unknown_shape") or no token likely enough
-    ("partial" at the picture's edge, else "low_confidence").
+    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge and
+    before others the confidence of what is read is lowered, and must still suffice.
     """
     best = int(np.argmax(probabilities))
     confidence = float(probabilities[best])
+    if at_edge or crowded:
+        confidence *= settings.doubtful_factor
     if classes[best] == NONE:
         return None, confidence, "unknown_shape"
     if confidence < settings.token_probability:
-        return None, confidence, "partial" if at_edge else "low_confidence"
+        return None, confidence, "partial" if at_edge else "occluded" if crowded else "low_confidence"
     return classes[best], confidence, None
 
 
@@ -98,7 +129,7 @@ class ReadingStage:
         place = clearest(rows, classes)
         box = item.boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(rows[place], classes, at_edge, self._settings)
+        token, confidence, reason = read_token(rows[place], classes, at_edge, item.is_crowded, self._settings)
         return Hand(
             side=item.side,
             token=token,

@@ -32,7 +32,8 @@ def frame():
             pairs = {(0, 1): pairs}
         for (first, second), score in (pairs or {}).items():
             scores[first, second] = scores[second, first] = score
-        return Candidates(tuple(regions), scores, size, axis)
+        face = None if axis is None else (axis, 0.0)
+        return Candidates(tuple(regions), scores, size, face)
 
     return make
 

@@ -80,3 +80,11 @@ def test_filled_rectangles_of_any_size_are_handled(size):
     mask[1:-1, 1:-1] = 255
     hand = cut_forearm(*_outline(mask), SETTINGS)
     assert hand is None or cv2.boundingRect(hand)[3] >= SETTINGS.least_height
+
+
+def test_rests_that_balance_about_the_palm_are_no_arm():
+    mask = np.zeros((41, 61), np.uint8)
+    cv2.circle(mask, (30, 20), 10, 255, cv2.FILLED)
+    settings = WristSettings(arm_top=-2.0, arm_ring=1.5, least_remainder=0.01)
+    mask[20, 5:8] = mask[20, 53:56] = 255
+    assert arm_direction(mask, (30, 20), 10.0, settings) is None

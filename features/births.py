@@ -125,7 +125,7 @@ def believed_single(
         and not track.missed
         and track.level >= least
         and track.hits >= settings.single_frames
-        and track.seen_s - track.since_s >= settings.single_s
+        and track.proved_s - track.since_s >= settings.single_s
     ]
     return max(known, key=lambda track: track.level, default=None)
 

@@ -1,8 +1,8 @@
 """Tracks and the regions of a frame: which track finds its hand in which region. Pure functions.
 
-First each numbered track looks inside its gate. What fails there is tried again with both hands at once: where a
-verified pair stands near both, the hands have leapt, as they do for a new sign or before a slow camera. What is
-left over belongs to the tentative tracks.
+First each numbered track looks inside its gate. What fails there has leapt, as hands do for a new sign or before a
+slow camera: to a verified pair near both, or else to a region near by that is believed on its own. What is left over
+belongs to the tentative tracks.
 """
 
 import math
@@ -105,6 +105,9 @@ def match_tracks(
     missing = [place for place in numbered if place not in found]
     if missing and observed.pairs:
         found |= _match_leaps(tracks, missing, found, observed, held, settings)
+    missing = [place for place in numbered if place not in found]
+    if missing:
+        found |= _match_believed(tracks, missing, found, observed, settings, selection)
     tentative = [place for place, track in enumerate(tracks) if track.life == "tentative"]
     if tentative:
         found |= _match_tentative(tracks, tentative, found, observed, settings, selection)
@@ -189,6 +192,29 @@ def _match_leaps(
                 for row, index in assigned.items()
             }
     return {}
+
+
+def _match_believed(
+    tracks: Sequence[TrackState],
+    missing: Sequence[int],
+    found: dict[int, Found],
+    observed: Observed,
+    settings: TrackSettings,
+    selection: SelectorSettings,
+) -> dict[int, Found]:
+    """Leaps of the missing tracks to regions that are believed on their own, the nearest first."""
+    taken = {item.region for item in found.values()}
+    believed = observed.credible(selection.single_score)
+    free = {index: region for index, region in believed.items() if index not in taken}
+    rows = [
+        gated(innovation(tracks[place].motion, settings, leap=True), free, settings.gate) for place in missing
+    ]
+    assigned = assign_nearest(
+        (match.squared, row, index) for row, matches in enumerate(rows) for index, match in matches.items()
+    )
+    return {
+        missing[row]: Found(index, rows[row][index].measured, leap=True) for row, index in assigned.items()
+    }
 
 
 def _match_tentative(

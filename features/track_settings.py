@@ -26,8 +26,9 @@ class TrackSettings:
         what was seen before, smaller to what looks most like a hand.
     order: what it is worth, on the same scale, that hands of which one went behind the other come back in the order in
         which they met, 0 to 1. Larger takes them for hands that parted again, smaller for hands that crossed.
-    leap_noise: standard deviation of the centre and of the size, sizes, 0.2 to 1, by which both hands may leap from
-        one frame to the next where the regions are a verified pair: a new sign, a slow camera.
+    leap_noise: standard deviation of the centre and of the size, sizes, 0.2 to 1, by which a hand may leap from one
+        frame to the next, for a new sign or a slow camera, where its region is half of a verified pair or believed
+        on its own.
     keep_share: least score of a region that a track takes as its own, as a share of the selector's single score,
         0 to 1. Lower bridges weak frames, higher leaves a hand sooner. Where two hands meet, it is the whole of it.
     considered: most regions of a frame that are looked at, best first, 2 to 64; bounds the time.
@@ -77,10 +78,10 @@ class TrackSettings:
     leap_noise: float = 0.45
     keep_share: float = 0.4
     considered: int = 24
-    sure_share: float = 0.4
+    sure_share: float = 0.2
     pair_s: float = 0.05
     pair_frames: int = 2
-    single_s: float = 0.2
+    single_s: float = 0.06
     single_frames: int = 3
     margin: float = 0.15
     replace_s: float = 0.1

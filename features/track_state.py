@@ -35,7 +35,8 @@ class TrackState(NamedTuple):
     side, basis: the diver's own side and what it rests on; side_level: mean score of the pair it rests on.
     motion: the filter's state. box, alternatives, confidence: of the last region. level: mean confidence.
     since_s, seen_s: time of the first and last region; proved_s: when the track was last believed by its own or its
-    pair's score, or, while tentative, worth observing. hits: regions so far. missed: frames since the last one.
+    pair's score, or, while tentative, worth observing; hits: frames in which it was that. missed: frames since the
+    last region.
 
     A named tuple because each frame changes each track a few times, which is done three times as fast as with a
     frozen dataclass.
@@ -148,7 +149,6 @@ def _with_region(
         confidence=region.confidence,
         level=blend(track.level, region.confidence, step, settings.memory_s),
         seen_s=now,
-        hits=track.hits + 1,
         missed=0,
     )
 

@@ -147,7 +147,7 @@ class TrackStage:
         held = births.held_level(self._tracks, self._evidence)
         worth = births.worth_observing(self._tracks, observed, held, self.settings, self._selection)
         self._tracks = [
-            track._replace(proved_s=self._now)
+            track._replace(proved_s=self._now, hits=track.hits + 1)
             if not track.number and owners.get(track.key) in worth
             else track
             for track in self._tracks

@@ -15,18 +15,13 @@ from lightgesture.benchmarks.methods import Image, PipelineMethod
 from lightgesture.benchmarks.regions import Progress, Run, run_sequence, run_single
 from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.selector import RegionStage
-from lightgesture.features.selector_file import load_selector
+from lightgesture.features.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Box
 from lightgesture.models import NONE
 from lightgesture.pipeline import Pipeline
 from lightgesture.reading import ReadingStage
 from lightgesture.training.left_out import LeftOut, read_left_out
-
-CLASSICAL = "classical"
-SELECTORS = (CLASSICAL,)
-"""The selectors of the product by their names; anything else is the path of a selector file."""
 
 
 class NoReader:
@@ -62,6 +57,7 @@ class FindingPipeline(Pipeline):
             self._colour = stages.colour()
         if stages.regions is not None:
             self._regions = stages.regions()
+            self._tracks = TrackStage(selection=self._regions.settings)
         if stages.tracks is not None:
             self._tracks = stages.tracks()
 
@@ -74,14 +70,15 @@ def variant(name: str, stages: Stages) -> PipelineMethod:
 def selector_method(selector: str, file: str | None = None) -> PipelineMethod:
     """A method that finds by one of SELECTORS, with what `file` holds instead of what is bundled, called after both.
 
-    selector may be a file itself. Raises lightgesture.features.selector_file.SelectorError.
+    selector may be a file itself, whose learned choice is then taken. Raises
+    lightgesture.features.selector_file.SelectorError.
     """
     if selector not in SELECTORS:
-        selector, file = CLASSICAL, selector
-    if file is None:
-        return variant(selector, Stages())
-    trained = load_selector(file)
-    return variant(f"{selector}, {Path(file).stem}", Stages(regions=lambda: RegionStage(trained)))
+        selector, file = SELECTORS[0], selector
+    name: SelectorName = "classical" if selector == "classical" else "learned"
+    label = name if file is None else f"{name}, {Path(file).stem}"
+    stage = RegionStage(name, file)
+    return variant(label, Stages(regions=lambda: stage))
 
 
 def run_left_out(

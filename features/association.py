@@ -4,7 +4,6 @@ The distance of a region is that of the nearest of its extents: with and without
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import product
 from typing import NamedTuple
 
 from lightgesture.features.motion import BoxState, Measured, measure
@@ -92,21 +91,25 @@ def assign(
     together: what two regions are worth beyond their own values. most: best regions of each track that are tried,
     which bounds the time.
     """
-    options: list[list[int | None]] = [
-        [None, *sorted(row, key=lambda index: (-row[index], index))[:most]] for row in values
-    ]
-    best: dict[int, int] = {}
+    first, second = (*values, {}, {})[:2]
+    best: tuple[int | None, int | None] = None, None
     best_total = 0.0
-    for choice in product(*options):
-        taken = {track: index for track, index in enumerate(choice) if index is not None}
-        if len(set(taken.values())) < len(taken):
-            continue
-        total = sum(values[track][index] for track, index in taken.items())
-        if len(taken) == 2:
-            total += together(taken[0], taken[1])
-        if total > best_total:
-            best, best_total = taken, total
-    return best
+    for one in (None, *_best_first(first, most)):
+        own = 0.0 if one is None else first[one]
+        for other in (None, *_best_first(second, most)):
+            if other is None:
+                total = own
+            elif other == one:
+                continue
+            else:
+                total = own + second[other] + (0.0 if one is None else together(one, other))
+            if total > best_total:
+                best, best_total = (one, other), total
+    return {track: index for track, index in enumerate(best) if index is not None}
+
+
+def _best_first(values: Mapping[int, float], most: int) -> list[int]:
+    return sorted(values, key=lambda index: (-values[index], index))[:most]
 
 
 def assign_nearest(distances: Iterable[tuple[float, int, int]]) -> dict[int, int]:

@@ -110,14 +110,18 @@ class IntegerNetwork:
             if any(source != result for source in sources):
                 raise NetworkError(f"{node.name}: the inputs of {node.op} must have the scale of its output")
         elif not all(LEAST_RATIO <= source.scale / result.scale < LARGEST_RATIO for source in sources):
-            raise NetworkError(f"{node.name}: the scales of the inputs of {node.op} are too far from its output's")
+            raise NetworkError(
+                f"{node.name}: the scales of the inputs of {node.op} are too far from its output's"
+            )
 
 
 def _check_quantisation(name: str, quantisation: Quantisation | None) -> None:
     if quantisation is None:
         raise NetworkError(f"{name} has no scale")
     if not (0.0 < quantisation.scale < np.inf) or not -128 <= quantisation.zero <= 127:
-        raise NetworkError(f"{name}: scale {quantisation.scale} or zero point {quantisation.zero} out of range")
+        raise NetworkError(
+            f"{name}: scale {quantisation.scale} or zero point {quantisation.zero} out of range"
+        )
 
 
 def _check_weights(node: Node, weights: Weights | None, shapes: Mapping[str, Shape]) -> None:

@@ -10,7 +10,14 @@ PASSING = ("concat", "max_pool", "upsample")
 OPERATIONS = (*WEIGHTED, *PASSING, "add", "mean")
 ACTIVATIONS = ("none", "relu", "relu6")
 
-LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, MOST_INPUTS, LARGEST_KERNEL, LARGEST_STRIDE = 4096, 1024, 256, 8, 7, 4
+LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, MOST_INPUTS, LARGEST_KERNEL, LARGEST_STRIDE = (
+    4096,
+    1024,
+    256,
+    8,
+    7,
+    4,
+)
 LARGEST_NAME = 64
 LARGEST_TENSOR = 2**24
 """Values of one tensor of one picture: bounds the memory that a file may ask for."""
@@ -66,7 +73,9 @@ def infer_shapes(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> dict[str
         shapes[name] = _checked_shape(name, tuple(shape))
     for node in nodes:
         _check_node(node, shapes)
-        shapes[node.name] = _checked_shape(node.name, _output_shape(node, [shapes[name] for name in node.inputs]))
+        shapes[node.name] = _checked_shape(
+            node.name, _output_shape(node, [shapes[name] for name in node.inputs])
+        )
     return shapes
 
 
@@ -116,7 +125,9 @@ def _output_shape(node: Node, sources: Sequence[Shape]) -> Shape:
 
 def _check_name(name: str) -> None:
     if not (name.isidentifier() and name.isascii() and len(name) <= LARGEST_NAME):
-        raise NetworkError(f"{name[:LARGEST_NAME]!r} is no name of a tensor: letters, digits and _, up to {LARGEST_NAME}")
+        raise NetworkError(
+            f"{name[:LARGEST_NAME]!r} is no name of a tensor: letters, digits and _, up to {LARGEST_NAME}"
+        )
 
 
 def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
@@ -125,7 +136,9 @@ def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
         raise NetworkError(f"{node.name}: unknown operation {node.op!r}; known are {', '.join(OPERATIONS)}")
     allowed = ACTIVATIONS if node.op in (*WEIGHTED, "add") else ACTIVATIONS[:1]
     if node.activation not in allowed:
-        raise NetworkError(f"{node.name}: activation {node.activation!r} of {node.op} is not {', '.join(allowed)}")
+        raise NetworkError(
+            f"{node.name}: activation {node.activation!r} of {node.op} is not {', '.join(allowed)}"
+        )
     if node.name in known:
         raise NetworkError(f"{node.name}: the name is used twice")
     least, most = {"add": (2, 2), "concat": (2, MOST_INPUTS)}.get(node.op, (1, 1))
@@ -144,7 +157,9 @@ def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
 
 def _checked_shape(name: str, shape: tuple[int, ...]) -> Shape:
     if len(shape) != 3 or not all(1 <= side <= LARGEST_SIDE for side in shape[:2]):
-        raise NetworkError(f"{name}: shape {shape} is not height, width, channels with sides up to {LARGEST_SIDE}")
+        raise NetworkError(
+            f"{name}: shape {shape} is not height, width, channels with sides up to {LARGEST_SIDE}"
+        )
     height, width, channels = shape
     if not 1 <= channels <= MOST_CHANNELS:
         raise NetworkError(f"{name}: {channels} channels; 1 to {MOST_CHANNELS} are allowed")

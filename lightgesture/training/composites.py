@@ -169,9 +169,7 @@ class Composer:
             part = part[:, ::-1]
         return np.asarray(part, np.float32) / np.float32(255.0)
 
-    def _put_decoys(
-        self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]
-    ) -> None:
+    def _put_decoys(self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]) -> None:
         """Objects about as large as hands: pieces of other pictures with a hard edge and a colour of their own."""
         width, height = self._settings.size
         count = rng.integers(1, self._settings.decoys + 1) if rng.random() < 0.5 else 0
@@ -207,7 +205,10 @@ class Composer:
         for x, head in zip(feet, heads, strict=True):
             cv2.line(drawn, (round(x), round(bottom)), head, _paint(rng), thick, cv2.LINE_AA)
             if rng.random() < 0.6:  # a joint of another colour
-                joint = head[0] + round(rng.normal(0.0, 1.0) * thick), head[1] + round(rng.uniform(0, 3) * thick)
+                joint = (
+                    head[0] + round(rng.normal(0.0, 1.0) * thick),
+                    head[1] + round(rng.uniform(0, 3) * thick),
+                )
                 cv2.line(drawn, head, joint, _paint(rng), round(1.2 * thick), cv2.LINE_AA)
         if len(heads) > 1 and rng.random() < 0.7:
             cv2.line(drawn, heads[0], heads[-1], _paint(rng), thick, cv2.LINE_AA)

@@ -50,7 +50,13 @@ def test_plain_words(run, make_video):
 
 def test_options_reach_the_pipeline(run, make_folder, fake):
     run("decode", make_folder("frames", 2), "--hold", 3, "--mirrored", "--grammar", "my.toml", "--fps", 4)
-    assert fake.made[-1].options == {"model": "svm", "hold": 3, "grammar": "my.toml", "mirrored": True}
+    assert fake.made[-1].options == {
+        "model": "svm",
+        "selector": "learned",
+        "hold": 3,
+        "grammar": "my.toml",
+        "mirrored": True,
+    }
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {"model": "svm", "hold": None, "grammar": None, "mirrored": False}

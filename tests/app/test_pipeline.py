@@ -5,7 +5,7 @@ import pytest
 
 from lightgesture import Pipeline
 from lightgesture.features.types import Candidates, HandRegion
-from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, read_token
+from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, SummaryRecord
 
 CLASSES = ("0", "5", "none")
@@ -101,19 +101,40 @@ def test_the_clearest_extent_is_read():
 
 
 @pytest.mark.parametrize(
-    ("row", "at_edge", "token", "reason"),
+    ("row", "at_edge", "crowded", "token", "reason"),
     [
-        ([0.9, 0.05, 0.05], False, "0", None),
-        ([0.4, 0.3, 0.3], False, None, "low_confidence"),
-        ([0.4, 0.3, 0.3], True, None, "partial"),
-        ([0.1, 0.2, 0.7], False, None, "unknown_shape"),
-        ([0.1, 0.2, 0.7], True, None, "unknown_shape"),
+        ([0.9, 0.05, 0.05], False, False, "0", None),
+        ([0.9, 0.05, 0.05], True, True, "0", None),
+        ([0.4, 0.3, 0.3], False, False, None, "low_confidence"),
+        ([0.4, 0.3, 0.3], True, True, None, "partial"),
+        ([0.4, 0.3, 0.3], False, True, None, "occluded"),
+        ([0.75, 0.15, 0.1], False, True, None, "occluded"),
+        ([0.1, 0.2, 0.7], False, False, None, "unknown_shape"),
+        ([0.1, 0.2, 0.7], True, True, None, "unknown_shape"),
     ],
 )
-def test_a_token_is_refused_with_its_reason(row, at_edge, token, reason):
-    found = read_token(np.array(row, np.float32), CLASSES, at_edge, ReadingSettings())
+def test_a_token_is_refused_with_its_reason(row, at_edge, crowded, token, reason):
+    settings = ReadingSettings()
+    found = read_token(np.array(row, np.float32), CLASSES, at_edge, crowded, settings)
     assert (found[0], found[2]) == (token, reason)
-    assert found[1] == pytest.approx(max(row))
+    factor = settings.doubtful_factor if at_edge or crowded else 1.0
+    assert found[1] == pytest.approx(max(row) * factor)
+
+
+@pytest.mark.parametrize(
+    ("others", "face", "expected"),
+    [
+        ([], None, False),
+        ([], (150.0, 120.0), True),
+        ([], (90.0, 120.0), False),
+        ([(160, 100, 100, 100)], None, True),
+        ([(190, 100, 100, 100)], None, False),
+        ([(300, 300, 10, 10)], None, False),
+    ],
+    ids=["alone", "before the face", "beside the face", "overlap", "touch", "far"],
+)
+def test_a_hand_before_a_face_or_another_hand_is_crowded(others, face, expected):
+    assert is_crowded((100, 100, 100, 100), others, face) is expected
 
 
 def test_a_frame_runs_in_one_thread_of_linear_algebra_and_gives_the_others_back(monkeypatch):

@@ -105,8 +105,9 @@ def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
     assert {"hands_val.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
     assert "fake_reef_1_single.jpg" not in names
     assert {name for name in names if not name.endswith(".jpg")} == {
-        "found_classical_hover_single.png",
-        "found_classical_hover_sequence.png",
+        f"found_{selector}_hover_{mode}.png"
+        for selector in ("learned", "classical")
+        for mode in ("single", "sequence")
     }
     sheet = cv2.imdecode(
         np.frombuffer((out / "fake_hover_single.jpg").read_bytes(), np.uint8), cv2.IMREAD_COLOR

@@ -82,7 +82,7 @@ def test_a_selector_file_is_called_after_its_name(tmp_path):
     copy.write_bytes(BUNDLED.read_bytes())
     assert selector_method("classical").name == "classical"
     assert selector_method("classical", str(copy)).name == "classical, fold 2"
-    assert selector_method(str(copy)).name == "classical, fold 2"
+    assert selector_method(str(copy)).name == "learned, fold 2"
     with pytest.raises(SelectorError, match="missing"):
         selector_method(str(tmp_path / "missing.npz"))
 

@@ -7,7 +7,8 @@ from lightgesture.features.selector_file import (
     BUNDLED,
     Selector,
     SelectorError,
-    load_selector,
+    load_classical,
+    load_learned,
     save_selector,
 )
 from lightgesture.features.training import export_trees
@@ -26,15 +27,26 @@ def test_exported_trees_predict_what_the_library_predicts():
     np.testing.assert_allclose(evaluate(export_trees(model), rows), model.predict(rows), atol=1e-5)
 
 
+def _assert_equal_trees(first, second):
+    for name in ("feature", "threshold", "left", "right", "value"):
+        np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
+
+
 def test_a_selector_survives_its_file(tmp_path):
-    bundled = load_selector()
-    save_selector(tmp_path / "copy.npz", bundled)
-    copy = load_selector(tmp_path / "copy.npz")
-    for part in ("regions", "pairs"):
-        for name in ("feature", "threshold", "left", "right", "value"):
-            np.testing.assert_array_equal(
-                getattr(getattr(copy, part), name), getattr(getattr(bundled, part), name)
-            )
+    file = tmp_path / "copy.npz"
+    bundled = Selector(load_classical(), load_learned())
+    save_selector(file, bundled)
+    classical, learned = load_classical(file), load_learned(file)
+    _assert_equal_trees(classical.regions, bundled.classical.regions)
+    _assert_equal_trees(classical.pairs, bundled.classical.pairs)
+    np.testing.assert_array_equal(classical.bank.centres, bundled.classical.bank.centres)
+    _assert_equal_trees(learned.places, bundled.learned.places)
+    _assert_equal_trees(learned.pairs, bundled.learned.pairs)
+    for name in ("locator", "refiner"):
+        mine, theirs = getattr(learned, name), getattr(bundled.learned, name)
+        assert (mine.nodes, mine.inputs, mine.outputs) == (theirs.nodes, theirs.inputs, theirs.outputs)
+        for node in mine.weights:
+            np.testing.assert_array_equal(mine.weights[node].weights, theirs.weights[node].weights)
     assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
 
 
@@ -52,7 +64,7 @@ def _write(path, **changes):
         {"version": np.int32(99)},
         {"regions_value": np.full((3, 3), np.nan, np.float32)},
         {"regions_left": np.full((2, 2), 7, np.int16)},
-        {"pairs_depth": np.int64(10_000)},
+        {"region_pairs_depth": np.int64(10_000)},
         {"regions_base": np.array(["x"])},
     ],
     ids=["version", "nan", "child", "depth", "text"],
@@ -60,7 +72,7 @@ def _write(path, **changes):
 def test_a_file_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
     path = _write(tmp_path / "bad.npz", **changes)
     with pytest.raises(SelectorError, match=r"bad\.npz: .*lightgesture train regions") as caught:
-        load_selector(path)
+        load_classical(path)
     assert "\n" not in str(caught.value)
 
 
@@ -69,7 +81,7 @@ def test_nan_in_a_tree_of_the_right_shape_is_refused(tmp_path):
         value = stored["regions_value"].copy()
     value[0, 0] = np.nan
     with pytest.raises(SelectorError, match="not finite"):
-        load_selector(_write(tmp_path / "nan.npz", regions_value=value))
+        load_classical(_write(tmp_path / "nan.npz", regions_value=value))
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 not a zip", b"text"])
@@ -77,26 +89,26 @@ def test_a_file_that_is_no_selector_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / "cut.npz"
     path.write_bytes(content)
     with pytest.raises(SelectorError, match=r"cut\.npz"):
-        load_selector(path)
+        load_classical(path)
 
 
 def test_a_cut_off_file_is_refused(tmp_path):
     path = tmp_path / "half.npz"
     path.write_bytes(BUNDLED.read_bytes()[:20_000])
     with pytest.raises(SelectorError, match=r"half\.npz"):
-        load_selector(path)
+        load_classical(path)
 
 
 def test_a_missing_file_is_refused(tmp_path):
     with pytest.raises(SelectorError, match=r"none\.npz: cannot be read"):
-        load_selector(tmp_path / "none.npz")
+        load_classical(tmp_path / "none.npz")
 
 
 def test_a_pickle_is_never_opened(tmp_path):
     path = tmp_path / "evil.npz"
     np.savez(path, version=np.array([object()], dtype=object))
     with pytest.raises(SelectorError, match=r"evil\.npz"):
-        load_selector(path)
+        load_classical(path)
 
 
 def test_trees_that_point_outside_are_refused():
@@ -104,4 +116,21 @@ def test_trees_that_point_outside_are_refused():
     trees = Trees(ones * 0, np.zeros((1, 1), np.float32), ones, ones, np.zeros((1, 1), np.float32), 0.0, 1)
     with pytest.raises(ValueError, match="outside its nodes"):
         trees.check(columns=3)
-    assert isinstance(Selector(trees, trees), Selector)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"locator_layout": np.frombuffer(b"{}", np.uint8)},
+        {"locator_layout": np.frombuffer(b"[" * 100_000, np.uint8)},
+        {"refiner_hand_weights": np.zeros((1, 3), np.int8)},
+        {"refiner_hand_biases": np.zeros(1, np.float32)},
+        {"places_feature": np.full((2, 2), 99, np.int16)},
+    ],
+    ids=["empty layout", "deep layout", "shape", "type", "column"],
+)
+def test_a_net_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
+    path = _write(tmp_path / "bad.npz", **changes)
+    with pytest.raises(SelectorError, match=r"bad\.npz: .*lightgesture train regions") as caught:
+        load_learned(path)
+    assert "\n" not in str(caught.value)

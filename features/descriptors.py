@@ -1,9 +1,9 @@
 """Fourier descriptors of outlines: the same few numbers for each, made for many outlines at once.
 
 Persoon and Fu, "Shape Discrimination Using Fourier Descriptors", IEEE Transactions on Systems, Man, and Cybernetics
-7(3), 1977: the points of a closed outline are a periodic complex function, and its low frequencies are its coarse shape.
-Place and size are divided out. Orientation is kept, because raised hands have their fingers above: with it, hands
-are told from other things much better than without.
+7(3), 1977: the points of a closed outline are a periodic complex function, and its low frequencies are its coarse
+shape. Place and size are divided out. Orientation is kept, because raised hands have their fingers above: with it,
+hands are told from other things much better than without.
 """
 
 from collections.abc import Sequence

@@ -118,5 +118,5 @@ def _regions_beside_hands(sample: Sample, colours: ColourStage, other_iou: float
     proposals = propose(colour)
     hands = np.array([label.box for label in sample.labels], np.float64).reshape(-1, 4)
     overlap = pairwise_iou(proposals.boxes, hands / np.tile(colour.scale, 2))
-    beside = (overlap < other_iou).all(axis=1)
-    return [contour for contour, free in zip(proposals.contours, beside, strict=True) if free]
+    beside = np.flatnonzero((overlap < other_iou).all(axis=1))
+    return [proposals.contours[index] for index in beside]

@@ -5,12 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lightgesture.benchmarks.accuracy import Failure, Report, frame_samples, sheet_name
-from lightgesture.benchmarks.finding import SELECTORS, run_left_out, selector_method
+from lightgesture.benchmarks.finding import run_left_out, selector_method
 from lightgesture.benchmarks.finding_tables import finding_tables
 from lightgesture.benchmarks.methods import Method
 from lightgesture.benchmarks.recorded import read_recorded, recorded_runs
 from lightgesture.benchmarks.regions import Progress, Run, run_methods
 from lightgesture.datasets import Sample, read_negatives, read_webcam
+from lightgesture.features.selector import SELECTORS
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,7 +54,7 @@ class ColourMap:
     @property
     def detail_scale(self) -> float:
         """Pixels of `detail` for one of `picture`."""
-        return self.detail.shape[1] / self.picture.shape[1]
+        return float(self.detail.shape[1] / self.picture.shape[1])
 
 
 def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:

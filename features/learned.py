@@ -76,7 +76,8 @@ class LearnedSelector:
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
         of a pair is the lower one.
         """
-        predicted = np.array(boxes, np.float32).reshape(-1, 4) / np.array(colour.scale * 2, np.float32)
+        scale = np.tile(np.array(colour.scale, np.float32), 2)
+        predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
         refined = self._nets.look_at(colour, predicted)
         scores = np.float32(HAND_IOU) * logistic(refined.hand)
         kept = distinct(refined.boxes, scores, self._settings)

@@ -42,7 +42,7 @@ class Seen:
         if not len(self.boxes) or not len(boxes):
             return np.zeros(len(boxes), np.float32)
         scale = np.array([*self.colour.scale, *self.colour.scale])
-        return pairwise_iou(boxes * scale, self.boxes).max(axis=1).astype(np.float32)
+        return np.asarray(pairwise_iou(boxes * scale, self.boxes).max(axis=1), np.float32)
 
 
 def look(pictures: Iterable[BoxedPicture], nets: Places) -> Iterable[Seen]:

@@ -1,8 +1,8 @@
 """A small integer network as data: its layers, its int8 weights, and the scale and zero point of every tensor.
 
 Numbers follow the 8-bit quantisation specification of LiteRT (Jacob et al., "Quantization and Training of Neural
-Networks for Efficient Integer-Arithmetic-Only Inference", 2018): value = scale * (integer - zero), weights symmetric with
-a scale for each output channel, biases int32 with the product of the input's and the weights' scales.
+Networks for Efficient Integer-Arithmetic-Only Inference", 2018): value = scale * (integer - zero), weights symmetric
+with a scale for each output channel, biases int32 with the product of the input's and the weights' scales.
 """
 
 from collections.abc import Mapping
@@ -131,8 +131,8 @@ def _check_weights(node: Node, weights: Weights | None, shapes: Mapping[str, Sha
     channels = shapes[node.name][2]
     if weights.biases.shape != (channels,) or weights.scales.shape != (channels,):
         raise NetworkError(f"{node.name}: {channels} biases and scales are needed")
-    kinds = (weights.weights.dtype, weights.biases.dtype, weights.scales.dtype)
-    if kinds != (np.int8, np.int32, np.float32):
+    arrays = weights.weights, weights.biases, weights.scales
+    if [array.dtype.name for array in arrays] != ["int8", "int32", "float32"]:
         raise NetworkError(f"{node.name}: weights, biases and scales must be int8, int32 and float32")
     if weights.weights.min() < -LARGEST_WEIGHT:
         raise NetworkError(f"{node.name}: a weight is below -{LARGEST_WEIGHT}")
@@ -145,7 +145,7 @@ def _check_weights(node: Node, weights: Weights | None, shapes: Mapping[str, Sha
 def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArray[np.int8]:
     """Nearest integers, clipped to int8."""
     levels = np.rint(np.asarray(values) * np.float32(1.0 / quantisation.scale)) + quantisation.zero
-    return np.clip(levels, -128, 127).astype(np.int8)
+    return np.asarray(np.clip(levels, -128, 127), np.int8)
 
 
 def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> NDArray[np.float32]:

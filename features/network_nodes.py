@@ -40,8 +40,8 @@ class Node:
 
     op: "conv" (padding as TensorFlow's SAME: at stride 2 the odd row or column goes below or to the right), "depthwise"
     (likewise, one filter a channel), "dense" (over all of a picture: rows, then columns, then channels), "add" (of two
-    tensors), "concat" (along the channels, of two or more), "upsample" (each cell doubled both ways), "max_pool" (padding as SAME), "mean"
-    (over all of a picture). inputs: names of earlier nodes or of inputs. channels: of the output, for conv and dense.
+    tensors), "concat" (along the channels, of two or more), "upsample" (each cell doubled both ways), "max_pool"
+    (padding as SAME), "mean" (over all of a picture). inputs: names of earlier nodes or of inputs. channels: of the output, for conv and dense.
     kernel, stride: for conv, depthwise and max_pool. activation: "none", "relu" or "relu6" (0 to 6), of weighted layers
     and add.
     """

@@ -1,6 +1,6 @@
 """The reference: the integers of a network computed in NumPy, as LiteRT's own reference kernels define them.
 
-Plain, without a run-time to install. It is what the fast run-time is tested against, and what runs where that is missing.
+Plain, without a run-time to install. The fast run-time is tested against it, and it runs where that is missing.
 """
 
 from collections.abc import Mapping

@@ -44,7 +44,7 @@ def outline_in(colour: ColourMap, box: Box, settings: OutlineSettings | None = N
                 best, best_iou = contour.reshape(-1, 2), iou
     if best is None:
         return _ellipse(box)
-    return np.rint((best + np.array([left, top]) + 0.5) * scale).astype(np.int32)
+    return np.asarray(np.rint((best + np.array([left, top]) + 0.5) * scale), np.int32)
 
 
 def _ellipse(box: Box) -> NDArray[np.int32]:

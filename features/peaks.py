@@ -20,8 +20,8 @@ PLANES = 6
 
 @dataclass(frozen=True, slots=True)
 class PeakSettings:
-    """most: peaks kept, 2 to 16; each costs the time of a look by the refiner. least_heat: of a peak, 0 to 1; lower finds
-    hands that hardly show and costs looks. same_iou: of two peaks whose boxes overlap more, the weaker is dropped.
+    """most: peaks kept, 2 to 16; each costs the time of a look by the refiner. least_heat: of a peak, 0 to 1; lower
+    finds hands that hardly show and costs looks. same_iou: of two peaks whose boxes overlap more, the weaker goes.
     least_face: heat at which a face is believed. most_maxima: local maxima that are looked at, so that a picture of
     specks costs a bounded time.
     """

@@ -37,7 +37,8 @@ class SelectorError(ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassicalParts:
-    """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both. bank: outlines of hands."""
+    """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both. bank: outlines of
+    hands."""
 
     regions: Trees
     pairs: Trees

@@ -40,8 +40,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "Report":
     """Score the finding of hands on the pictures of a data folder. UsageError: a selector file is damaged."""
-    from lightgesture.benchmarks.finding import SELECTORS
     from lightgesture.benchmarks.finding_report import FindingRequest, evaluate_finding
+    from lightgesture.features.selector import SELECTORS
     from lightgesture.features.selector_file import SelectorError
 
     selectors = args.selector or SELECTORS

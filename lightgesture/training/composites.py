@@ -24,9 +24,10 @@ class CompositeSettings:
     size: (width, height) in pixels. hand_height: least and most height of an upright hand over the picture's
     height, drawn evenly in the logarithm. spread: distance of the hands from the body's axis in hand heights.
     lift: height of the hands over the shoulders in hand heights. single, dark, water: shares of pictures with one
-    hand, in a dark room, under water. empty: of the others, those in which nobody shows a hand, in every second because nobody is there. decoys: most objects of
-    another picture, often red or skin-coloured, that stand about. structures: share with poles, gates or boxes such as
-    stand in test pools. lamps: share of dark pictures with a spot of light on something else. bare_arms: share with bare forearms. other_hands: share of pictures whose two
+    hand, in a dark room, under water. empty: of the others, those in which nobody shows a hand, in every second
+    because nobody is there. decoys: most objects of another picture, often red or skin-coloured, that stand about.
+    structures: share with poles, gates or boxes such as stand in test pools. lamps: share of dark pictures with a
+    spot of light on something else. bare_arms: share with bare forearms. other_hands: share of pictures whose two
     hands show different signs.
     """
 

@@ -61,7 +61,8 @@ def folded(module: TorchNetwork, node: Node) -> tuple[NDArray[np.float32], NDArr
     if node.name in module.norms:
         norm = module.norms[node.name]
         assert isinstance(norm, nn.BatchNorm1d | nn.BatchNorm2d)
-        assert norm.running_mean is not None and norm.running_var is not None
+        assert norm.running_mean is not None
+        assert norm.running_var is not None
         gain = norm.weight.detach() / torch.sqrt(norm.running_var + norm.eps)
         weights = weights * gain.reshape(-1, *[1] * (weights.ndim - 1))
         biases = (biases - norm.running_mean) * gain + norm.bias.detach()

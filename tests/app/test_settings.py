@@ -38,7 +38,8 @@ def test_command_line_goes_before_the_file(config):
 
 def test_every_option_may_stand_in_the_file(config):
     path = config(
-        'model = "/m.npz"\nselector = "classical"\ngrammar = "/g.toml"\nhold = 9\nmirrored = true\nfps = 12.5\njson = true\n'
+        'model = "/m.npz"\nselector = "classical"\ngrammar = "/g.toml"\nhold = 9\nmirrored = true\n'
+        "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
     )
     settings = load("--config", path)

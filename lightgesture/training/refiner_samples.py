@@ -22,11 +22,11 @@ Random = np.random.Generator
 class RefinerSampling:
     """What is drawn.
 
-    windows: of one picture. real, empty: shares of whole frames and of water; the rest is composed. hand, hard,
-    beside, face: windows on hands, on false peaks, beside hands and on faces; the rest anywhere. jitter: standard deviation of
-    the place over the side; resize: of the logarithm of the size. turned, turn_rad: share of turned windows and the
-    standard deviation. hand_iou: overlap from which a window is one of a hand; none_iou: below which it is none; between
-    them it does not count.
+    windows: of one picture. real, empty: shares of whole frames and of water; the rest is composed.
+    hand, hard, beside, face: up to which draw a window lies on a hand, on a false peak, beside a hand, on a face;
+        beyond, anywhere. jitter: standard deviation of the place over the side; resize: of the logarithm of the size.
+    turned, turn_rad: share of turned windows and the standard deviation.
+    hand_iou: overlap from which a window is one of a hand; none_iou: below which it is none; between, it counts not.
     """
 
     windows: int = 8

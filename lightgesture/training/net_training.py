@@ -1,0 +1,103 @@
+"""The loop that trains a net: AdamW, a cosine of the rate, a running mean of the weights, checkpoints. Needs torch."""
+
+import copy
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from lightgesture.results.atomic import replacing
+from lightgesture.training.torch_network import TorchNetwork
+
+Batch = tuple[Mapping[str, Tensor], tuple[Tensor, ...]]
+"""Inputs of the net and what the loss compares with."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSettings:
+    """steps: of the optimiser. rate: highest learning rate. warm_up: steps until it is reached. decay: of weights.
+    clip: largest norm of the gradient. mean: share of the running mean that each step keeps. save_every: steps between
+    checkpoints."""
+
+    steps: int
+    rate: float
+    warm_up: int = 300
+    decay: float = 0.02
+    clip: float = 5.0
+    mean: float = 0.999
+    save_every: int = 500
+
+
+def train_net(
+    net: TorchNetwork,
+    batch: Callable[[np.random.Generator], Batch],
+    loss: Callable[[Mapping[str, Tensor], tuple[Tensor, ...]], Tensor],
+    settings: LoopSettings,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
+) -> TorchNetwork:
+    """The running mean of the trained net; goes on at `checkpoint` where there is one.
+
+    Step `n` draws its batch from (seed, n) alone, so that an interrupted training gives what a whole one gives.
+    """
+    mean = copy.deepcopy(net)
+    decayed = [value for value in net.parameters() if value.ndim > 1]
+    plain = [value for value in net.parameters() if value.ndim <= 1]
+    groups = [{"params": decayed, "weight_decay": settings.decay}, {"params": plain, "weight_decay": 0.0}]
+    optimiser = torch.optim.AdamW(groups, settings.rate)
+    first = _resume(checkpoint, net, mean, optimiser)
+    net.train()
+    for step in range(first, settings.steps):
+        for group in optimiser.param_groups:
+            group["lr"] = _rate(step, settings)
+        inputs, truth = batch(np.random.default_rng((seed, step)))
+        value = loss(net(inputs), truth)
+        optimiser.zero_grad()
+        value.backward()
+        torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)
+        optimiser.step()
+        _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
+        if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
+            progress(f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value):.3f}")
+            state = {"net": net.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict()}
+            with replacing(checkpoint) as temporary:
+                torch.save({**state, "step": step + 1}, temporary)
+    return mean.eval()
+
+
+def _rate(step: int, settings: LoopSettings) -> float:
+    cosine = 0.5 * (1.0 + np.cos(np.pi * step / settings.steps))
+    return float(settings.rate * min(1.0, (step + 1) / settings.warm_up) * (cosine * 0.98 + 0.02))
+
+
+def _resume(checkpoint: Path, net: TorchNetwork, mean: TorchNetwork, optimiser: torch.optim.Optimizer) -> int:
+    if not checkpoint.exists():
+        return 0
+    state = torch.load(checkpoint, weights_only=True)
+    net.load_state_dict(state["net"])
+    mean.load_state_dict(state["mean"])
+    optimiser.load_state_dict(state["optimiser"])
+    return int(state["step"])
+
+
+def _average(mean: TorchNetwork, net: TorchNetwork, keep: float) -> None:
+    with torch.no_grad():
+        for own, new in zip(mean.state_dict().values(), net.state_dict().values(), strict=True):
+            if own.dtype.is_floating_point:
+                own.lerp_(new, 1.0 - keep)
+            else:
+                own.copy_(new)
+
+
+def giou(one: Tensor, other: Tensor) -> Tensor:
+    """Generalised IoU (Rezatofighi et al., 2019) of corners (n, 4) each: (n,), -1 to 1."""
+    low, high = torch.maximum(one[:, :2], other[:, :2]), torch.minimum(one[:, 2:], other[:, 2:])
+    inner = (high - low).clamp(min=0).prod(dim=1)
+    union = (one[:, 2:] - one[:, :2]).prod(dim=1) + (other[:, 2:] - other[:, :2]).prod(dim=1) - inner
+    low, high = torch.minimum(one[:, :2], other[:, :2]), torch.maximum(one[:, 2:], other[:, 2:])
+    hull = (high - low).prod(dim=1)
+    return inner / union - (hull - union) / hull

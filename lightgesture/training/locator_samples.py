@@ -27,8 +27,8 @@ class LocatorSampling:
 
     real, empty: shares of whole frames and of water without a hand; the rest is composed. scales: range of the size for
     each kind, 1 fills the working picture. turned: share of turned pictures; turn_deg: their standard deviation.
-    stretch: standard deviation of the logarithm of the aspect. least_visible: share of a hand that must be inside for it
-    to be learnt. least_side: working pixels, likewise. spread: standard deviation of a heat spot over the box's side.
+    stretch: standard deviation of the logarithm of the aspect. least_visible: share of a hand that must be inside to
+    be learnt. least_side: working pixels, likewise. spread: standard deviation of a heat spot over the box's side.
     near: heat above which a cell learns the box.
     """
 

@@ -1,196 +1,184 @@
-"""The pictures from which the selector learns, read from a data folder, and its training from end to end."""
+"""The training of the selector from end to end: pictures, both nets, the trees of either choice, the file and its card."""
 
+import itertools
 import json
+import resource
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import cv2
 import numpy as np
 
-from lightgesture.datasets import (
-    Sample,
-    read_frames,
-    read_landmarks,
-    read_negatives,
-    read_table,
-    read_webcam,
-)
-from lightgesture.features.selector_file import Selector, save_selector
+from lightgesture.errors import InputError, UsageError
+from lightgesture.features.selector_file import ClassicalParts, LearnedParts, Selector, save_selector
 from lightgesture.features.training import BoxedPicture, fit_pairs, fit_regions
-from lightgesture.features.types import Image
 from lightgesture.results.atomic import replacing
-from lightgesture.sources import read_picture
-from lightgesture.training.composites import Composer, attenuate, expose
-from lightgesture.training.cutouts import Cutout, cut_out
+from lightgesture.training.bank import make_bank
+from lightgesture.training.left_out import CARD_KEY, LeftOut
+from lightgesture.training.picture_pool import Ingredients, compose_pool
+from lightgesture.training.region_pictures import Material, PictureSettings, read_material, variants
+
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
 class RegionTraining:
-    """What goes into the selector.
+    """How much goes into the selector.
 
-    region_composites, pair_composites: composed pictures for each of the two fits.
-    cutouts_per_source: most hands cut out of one source, so that no person rules.
-    longest_side: whole frames are reduced to this many pixels first.
-    negative_sets: sets of `negatives` that are trained on; all others stay unseen for the report.
-    left_out_sources: sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures
-        would not count otherwise.
+    composed: pictures for the nets and the classical trees. unseen: others, on which the trees that weigh the nets are
+    fitted. pair_share: of the unseen, those for pairs. locator_steps, refiner_steps: of the optimiser. mined: composed
+    pictures searched for false peaks.
     """
 
-    region_composites: int = 8000
-    pair_composites: int = 2500
-    cutouts_per_source: int = 8
-    longest_side: int = 320
-    negative_sets: tuple[str, ...] = ("funie", "rov25", "u45")
-    left_out_sources: tuple[str, ...] = ("emre_drone",)
-
-
-def _reduce(picture: BoxedPicture, longest: int) -> BoxedPicture:
-    height, width = picture.image.shape[:2]
-    scale = longest / max(height, width)
-    if scale >= 1.0:
-        return picture
-    image = cv2.resize(picture.image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    boxes = tuple(
-        (round(x * scale), round(y * scale), round(w * scale), round(h * scale))
-        for x, y, w, h in picture.boxes
-    )
-    return BoxedPicture(image, boxes)  # type: ignore[arg-type]
-
-
-def _mirrored(picture: BoxedPicture) -> BoxedPicture:
-    width = picture.image.shape[1]
-    boxes = tuple((width - x - w, y, w, h) for x, y, w, h in picture.boxes)
-    return BoxedPicture(np.ascontiguousarray(picture.image[:, ::-1]), boxes)
-
-
-def _boxed(sample: Sample, longest: int) -> BoxedPicture:
-    boxes = tuple(label.box for label in sample.labels)
-    return _reduce(BoxedPicture(read_picture(sample.path), boxes), longest)
-
-
-def whole_frames(data: Path, settings: RegionTraining) -> list[BoxedPicture]:
-    """People in rooms with their hands boxed: `webcam/train` and the single pictures of `frames/subhi`."""
-    singles = [sample for sample in read_frames(data) if sample.source == "subhi" and sample.order is None]
-    return [_boxed(sample, settings.longest_side) for sample in read_webcam(data, "train") + singles]
-
-
-def negatives(data: Path, settings: RegionTraining) -> list[BoxedPicture]:
-    """Underwater frames without a hand, of the sets that may be trained on."""
-    samples = [sample for sample in read_negatives(data) if sample.source in settings.negative_sets]
-    return [_boxed(sample, settings.longest_side) for sample in samples]
-
-
-def cutouts(data: Path, settings: RegionTraining, seed: int) -> list[Cutout]:
-    """Hands of `hands/train`, cut out, at most a few from each source."""
-    by_source: dict[str, list[dict[str, str]]] = {}
-    for row in read_table(data, "hands/train.csv"):
-        if row["set"] not in settings.left_out_sources:
-            by_source.setdefault(row["set"], []).append(row)
-    rng = np.random.default_rng(seed)
-    found = []
-    for source in sorted(by_source):
-        own = by_source[source]
-        for index in rng.permutation(len(own))[: settings.cutouts_per_source]:
-            row = own[index]
-            image = read_picture(data / "hands" / row["path"])
-            cutout = cut_out(image, read_landmarks(row), row["token"], source)
-            if cutout is not None:
-                found.append(cutout)
-    return found
-
-
-def without_hands(picture: BoxedPicture) -> Image:
-    """The frame as a background: each labelled hand painted over from what stands around it."""
-    mask = np.zeros(picture.image.shape[:2], np.uint8)
-    for x, y, width, height in picture.boxes:
-        margin_x, margin_y = width // 6, height // 5
-        cv2.rectangle(
-            mask, (x - margin_x, y - margin_y), (x + width + margin_x, y + height + margin_y), 255, -1
-        )
-    return cv2.inpaint(picture.image, mask, 5, cv2.INPAINT_TELEA)  # type: ignore[return-value]
-
-
-def variants(picture: BoxedPicture, rng: np.random.Generator) -> Iterator[BoxedPicture]:
-    """The picture itself, then it and its mirror image under water and in the dark."""
-    yield picture
-    for view in (picture, _mirrored(picture)):
-        image = view.image.astype(np.float32) / np.float32(255.0)
-        yield BoxedPicture(expose(attenuate(image, rng), rng), view.boxes)
-        shaded = np.power(np.power(image, 2.2) * rng.uniform(0.03, 0.3), 1 / 2.2)
-        yield BoxedPicture(expose(np.asarray(shaded, np.float32), rng), view.boxes)
-
-
-def _composed(composer: Composer, count: int, seed: int) -> Iterator[BoxedPicture]:
-    rng = np.random.default_rng(seed)
-    for _ in range(count):
-        composite = composer.compose(rng)
-        yield BoxedPicture(composite.image, composite.boxes)
+    composed: int = 12000
+    unseen: int = 2000
+    pair_share: float = 0.4
+    locator_steps: int = 9000
+    refiner_steps: int = 6000
+    mined: int = 4000
+    pictures: PictureSettings = field(default_factory=PictureSettings)
 
 
 def train_regions(
     data: Path,
     out: Path,
     seed: int = 0,
+    jobs: int = 1,
+    without: LeftOut | None = None,
     settings: RegionTraining | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = lambda _: None,
 ) -> None:
-    """Fit the selector and write it with its card (`out` with the suffix .json). Raises InputError."""
-    settings = settings or RegionTraining()
-    started = time.monotonic()
+    """Train the selector and write it with its card (`out` with the suffix .json).
+
+    What is done already lies in a folder beside `out` and is used when the same command runs again. The trees that
+    weigh the nets are fitted on composed pictures the nets have not seen; whole frames are not among them, because the
+    nets have learnt them. Raises InputError, UsageError.
+    """
+    need_torch()
+    settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
+    folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
     progress("reading whole frames and cutting out hands")
-    frames, empty = whole_frames(data, settings), negatives(data, settings)
-    hands = cutouts(data, settings, seed)
-    composer = Composer(hands, [picture.image for picture in empty], [without_hands(p) for p in frames])
+    material = read_material(data, without, settings.pictures, seed)
+    if not (material.frames and material.empty and material.hands):
+        raise InputError(f"{data}: too little is left to train on; leave out fewer sources")
+    progress("composing pictures")
+    ingredients = Ingredients(material.hands, material.waters(), material.rooms())
+    composed = compose_pool(ingredients, settings.composed, seed + 1, jobs, folder / "composed.npy")
+    unseen = compose_pool(ingredients, settings.unseen, seed + 2, jobs, folder / "unseen.npy")
+    learned = _learned(material, composed, unseen, folder, seed, settings, progress)
+    progress("fitting the classical trees")
+    classical = _classical(data, material, composed, unseen, without, seed)
+    save_selector(out, Selector(classical, learned))
+    _write_card(out, seed, without, settings, material, time.monotonic() - started)
+
+
+def need_torch() -> None:
+    """Raises UsageError where torch is not installed."""
+    try:
+        import torch  # noqa: F401
+    except ImportError as error:
+        raise UsageError(
+            'torch is not installed, which trains the nets; pip install "lightgesture[train]"'
+        ) from error
+
+
+def checkpoint_folder(out: Path, request: dict[str, object]) -> Path:
+    """The folder of what is done; UsageError where it belongs to another training."""
+    folder = out.with_suffix(".parts")
+    note, text = folder / "request.json", json.dumps(request, sort_keys=True)
+    if note.exists() and note.read_text(encoding="utf-8") != text:
+        raise UsageError(f"{folder}: holds parts of another training; remove it or give another --out")
+    if not note.exists():
+        with replacing(note) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    return folder
+
+
+def _learned(
+    material: Material,
+    composed: list[BoxedPicture],
+    unseen: list[BoxedPicture],
+    folder: Path,
+    seed: int,
+    settings: RegionTraining,
+    progress: Progress,
+) -> LearnedParts:
+    from lightgesture.features.learned import Places
+    from lightgesture.features.learned_training import fit_place_pairs, fit_places, look
+    from lightgesture.training.hard_regions import hard_regions
+    from lightgesture.training.locator import train_locator
+    from lightgesture.training.locator_samples import LocatorSamples
+    from lightgesture.training.refiner import train_refiner
+    from lightgesture.training.refiner_samples import RefinerSamples
+
+    samples = LocatorSamples(material.frames, material.empty, composed)
+    locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
+    progress("searching for what the locator mistakes")
+    parts = (material.frames, material.empty, composed[: settings.mined])
+    windows = RefinerSamples(*(hard_regions(part, locator) for part in parts))
+    refiner = train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
+    progress("fitting the trees that weigh both nets")
+    seen = list(look(unseen, Places(locator, refiner)))
+    cut = round(len(seen) * (1.0 - settings.pair_share))
+    places = fit_places(seen[:cut], seed)
+    return LearnedParts(locator, refiner, places, fit_place_pairs(seen[cut:], places, seed))
+
+
+def _classical(
+    data: Path,
+    material: Material,
+    composed: list[BoxedPicture],
+    unseen: list[BoxedPicture],
+    without: LeftOut,
+    seed: int,
+) -> ClassicalParts:
+    bank = make_bank(data, seed, without)
 
     def region_pictures() -> Iterator[BoxedPicture]:
         rng = np.random.default_rng(seed + 1)
-        for picture in frames:
+        for picture in material.frames:
             yield from variants(picture, rng)
-        yield from empty
-        yield from _composed(composer, settings.region_composites, seed + 2)
+        yield from material.empty
+        yield from composed[: len(composed) // 2]
 
-    progress("fitting the trees for regions")
-    regions = fit_regions(region_pictures(), seed)
-    progress("fitting the trees for pairs")
-    singles = [picture for picture in frames if len(picture.boxes) > 1]
-    composed = _composed(composer, settings.pair_composites, seed + 3)
-    pairs = fit_pairs((picture for part in (singles, empty, composed) for picture in part), regions, seed)
-    save_selector(out, Selector(regions, pairs))
-    _write_card(out, seed, settings, frames, hands, empty, time.monotonic() - started)
+    regions = fit_regions(region_pictures(), bank, seed)
+    two_handed = [picture for picture in material.frames if len(picture.boxes) > 1]
+    pairs = fit_pairs(itertools.chain(two_handed, material.empty, unseen), regions, bank, seed)
+    return ClassicalParts(regions, pairs, bank)
 
 
 def _write_card(
-    out: Path,
-    seed: int,
-    settings: RegionTraining,
-    frames: Sequence[BoxedPicture],
-    hands: Sequence[Cutout],
-    empty: Sequence[BoxedPicture],
-    seconds: float,
+    out: Path, seed: int, without: LeftOut, settings: RegionTraining, material: Material, seconds: float
 ) -> None:
     import sklearn
+    import torch
 
     card = {
-        "model": "selector of hand regions: boosted trees over regions and over pairs of regions",
-        "command": f"lightgesture train regions --data DATA --out {out.name} --seed {seed}",
+        "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
         "data": {
-            "whole frames (webcam/train, single pictures of frames/subhi)": len(frames),
-            "hands cut out of hands/train": len(hands),
-            "sources of these hands": len({hand.source for hand in hands}),
-            "composed pictures": settings.region_composites + settings.pair_composites,
-            "underwater frames without a hand": len(empty),
-            "sets of negatives used": list(settings.negative_sets),
+            "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
+            "hands cut out of hands/train": len(material.hands),
+            "underwater frames without a hand": len(material.empty),
+            "composed pictures": settings.composed + settings.unseen,
+            "sets of negatives used": list(settings.pictures.negative_sets),
         },
+        CARD_KEY: without.to_card(),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
-        "limits": "hands 8 to 400 pixels high in a 640 x 480 picture; skin redder than what touches it after "
-        "colour balance; hands before faces and skin-coloured walls are often missed",
+        "limits": "bare hands in air; water, darkness and divers are composed; gloves were not seen",
         "seed": seed,
+        "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),
-        "versions": {"numpy": np.__version__, "opencv": cv2.__version__, "scikit-learn": sklearn.__version__},
+        "peak_memory_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024,
+        "versions": {
+            "numpy": np.__version__,
+            "opencv": cv2.__version__,
+            "scikit-learn": sklearn.__version__,
+            "torch": str(torch.__version__),
+        },
     }
     with replacing(out.with_suffix(".json")) as temporary:
         temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The training of the selector from end to end: pictures, both nets, the trees of either choice, the file and its card."""
+"""The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
 import itertools
 import json

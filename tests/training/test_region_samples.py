@@ -1,0 +1,75 @@
+"""Samples of both nets: boxes move with their pictures, targets say where hands are, few steps of training run."""
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.features.training import BoxedPicture
+from lightgesture.training.locator_samples import LocatorSamples, LocatorSampling, make_targets, warp
+from lightgesture.training.photometric import PhotometricSettings, photometric
+from lightgesture.training.refiner_samples import RefinerSamples, cut_turned, target_edges
+
+
+def a_picture(boxes=((120, 80, 60, 80),)):
+    image = np.zeros((240, 320, 3), np.uint8)
+    for x, y, w, h in boxes:
+        cv2.ellipse(image, (x + w // 2, y + h // 2), (w // 2, h // 2), 0, 0, 360, (255,) * 3, -1)
+    return BoxedPicture(image, boxes, (), True, frozenset({"drawn"}))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_drawn_ellipse_stays_in_its_box(seed):
+    rng = np.random.default_rng(seed)
+    image, hands, _ = warp(a_picture(), rng, (0.6, 1.5), LocatorSampling())
+    x, y, width, height = cv2.boundingRect((image[..., 0] > 127).astype(np.uint8))
+    seen = np.clip(hands[0], 0, (160, 120, 160, 120))
+    assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=2.0)
+
+
+def test_targets_are_hottest_in_the_middle_and_measure_to_the_edges():
+    maps = make_targets(
+        np.array([[40, 20, 80, 60]], np.float32), np.zeros((0, 4), np.float32), False, LocatorSampling()
+    )
+    row, column = np.unravel_index(maps.heat[0].argmax(), maps.heat[0].shape)
+    assert maps.heat[0].max() == 1
+    x, y = (column + 0.5) * 4, (row + 0.5) * 4
+    np.testing.assert_allclose(maps.box[:, row, column], (x - 40, y - 20, 80 - x, 60 - y))
+    assert maps.weight[1, 0, 0] == 0
+    assert maps.weight[1, row, column] == 1
+
+
+@pytest.mark.parametrize("flip", [False, True])
+@pytest.mark.parametrize("turn", [-0.3, 0.0, 0.3])
+def test_edges_of_a_window_go_round_the_turned_hand(turn, flip):
+    window = (90, 60, 120)
+    cut = cut_turned(a_picture().image, window, 96, turn, flip)
+    x, y, width, height = cv2.boundingRect((cut[..., 0] > 127).astype(np.uint8))
+    edges = (target_edges(np.array([120, 80, 60, 80.0]), window, turn, flip) + 0.5) * 96
+    assert (x, y, x + width, y + height) == pytest.approx(tuple(edges), abs=2.0)
+
+
+def test_another_light_repeats_for_a_seed():
+    first, again = (
+        photometric(a_picture().image, np.random.default_rng(2), True, PhotometricSettings()) for _ in "ab"
+    )
+    np.testing.assert_array_equal(first, again)
+    assert first.dtype == np.uint8
+
+
+def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
+    pytest.importorskip("torch")
+    from lightgesture.training.hard_regions import hard_regions
+    from lightgesture.training.locator import train_locator
+    from lightgesture.training.refiner import train_refiner
+
+    pictures, empty, said = [a_picture()], [a_picture(())], []
+    locator = train_locator(
+        LocatorSamples(pictures, empty, pictures), 2, 0, tmp_path / "locator.pt", said.append
+    )
+    windows = RefinerSamples(*(hard_regions(part, locator) for part in (pictures, empty, pictures)))
+    refiner = train_refiner(windows, 2, 0, tmp_path / "refiner.pt", said.append)
+    assert len(said) == 2
+    again = train_refiner(windows, 2, 0, tmp_path / "refiner.pt", said.append)
+    assert len(said) == 2
+    for name, weights in refiner.weights.items():
+        np.testing.assert_array_equal(again.weights[name].weights, weights.weights)

@@ -57,7 +57,7 @@ def train_net(
         inputs, truth = batch(np.random.default_rng((seed, step)))
         value = loss(net(inputs), truth)
         optimiser.zero_grad()
-        value.backward()
+        value.backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)
         optimiser.step()
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))

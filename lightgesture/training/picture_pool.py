@@ -55,7 +55,7 @@ def compose_pool(
                 rows.append([composite.boxes, composite.faces, sorted(composite.sources)])
             images.flush()
         with replacing(table) as temporary:
-            temporary.write_text(json.dumps(rows), encoding="utf-8")
+            temporary.write_text(json.dumps(rows, default=int), encoding="utf-8")
     return _read(path, table)
 
 

@@ -116,8 +116,10 @@ def _learned(
     samples = LocatorSamples(material.frames, material.empty, composed)
     locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
     progress("searching for what the locator mistakes")
-    parts = (material.frames, material.empty, composed[: settings.mined])
-    windows = RefinerSamples(*(hard_regions(part, locator) for part in parts))
+    frames, empty, mined = (
+        hard_regions(part, locator) for part in (material.frames, material.empty, composed[: settings.mined])
+    )
+    windows = RefinerSamples(frames, empty, mined)
     refiner = train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
     progress("fitting the trees that weigh both nets")
     seen = list(look(unseen, Places(locator, refiner)))

@@ -12,6 +12,8 @@ Levels = NDArray[np.int8]
 
 MODEL_VERSION = 3
 """Of the LiteRT schema."""
+MOST_PLANNED = 16
+"""Shapes of input that are kept ready: a folder of pictures of many sizes must not fill the memory."""
 SAME = 0
 """The schema's number of this padding."""
 
@@ -31,9 +33,11 @@ class LiteRtRunner:
         """int8 (n, h, w, channels) for each input -> the same for each output."""
         network = self._network
         key = tuple(inputs[name].shape for name in network.inputs)
-        planned = self._planned.get(key)
-        if planned is None:
-            planned = self._planned[key] = self._plan(inputs)
+        planned = self._planned.pop(key, None) or self._plan(inputs)
+        # The last is the one used last, so that the first can go.
+        self._planned[key] = planned
+        if len(self._planned) > MOST_PLANNED:
+            del self._planned[next(iter(self._planned))]
         interpreter, places, results = planned
         for name, place in zip(network.inputs, places, strict=True):
             interpreter.set_tensor(place, inputs[name])

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 WEIGHTED = ("conv", "depthwise", "dense")
 """Operations with weights."""
-PASSING = ("concat", "max_pool", "upsample")
+PASSING = ("upsample",)
 """Operations that hand values on unchanged, so that their output has the scale of their input."""
-OPERATIONS = (*WEIGHTED, *PASSING, "add", "mean")
-ACTIVATIONS = ("none", "relu", "relu6")
+OPERATIONS = (*WEIGHTED, *PASSING, "add")
+ACTIVATIONS = ("none", "relu6")
 
 LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, MOST_INPUTS, LARGEST_KERNEL, LARGEST_STRIDE = (
     4096,
@@ -23,8 +23,6 @@ LARGEST_TENSOR = 2**24
 """Values of one tensor of one picture: bounds the memory that a file may ask for."""
 MOST_TAPS = 2**15
 """Products summed by one output value: 2**15 of at most 255 * 127 stay below 2**30, half of what int32 holds."""
-LARGEST_MEAN = 2**16
-"""Cells that a mean may take in."""
 
 Shape = tuple[int, int, int]
 """Height, width, channels; a vector has height and width 1."""
@@ -40,10 +38,9 @@ class Node:
 
     op: "conv" (padding as TensorFlow's SAME: at stride 2 the odd row or column goes below or to the right), "depthwise"
     (likewise, one filter a channel), "dense" (over all of a picture: rows, then columns, then channels), "add" (of two
-    tensors), "concat" (along the channels, of two or more), "upsample" (each cell doubled both ways), "max_pool"
-    (padding as SAME), "mean" (over all of a picture). inputs: names of earlier nodes or of inputs. channels: of the output, for conv and dense.
-    kernel, stride: for conv, depthwise and max_pool. activation: "none", "relu" or "relu6" (0 to 6), of weighted layers
-    and add.
+    tensors), "upsample" (each cell doubled both ways). inputs: names of earlier nodes or of inputs. channels: of the
+    output, for conv and dense. kernel, stride: for conv and depthwise. activation: "none" or "relu6" (0 to 6), of
+    weighted layers and add.
     """
 
     name: str
@@ -110,15 +107,12 @@ def _output_shape(node: Node, sources: Sequence[Shape]) -> Shape:
     height, width, channels = sources[0]
     if node.op == "dense":
         return 1, 1, node.channels
-    if node.op == "mean":
-        return 1, 1, channels
     if node.op == "upsample":
         return 2 * height, 2 * width, channels
-    if node.op in ("add", "concat"):
-        compared = 3 if node.op == "add" else 2
-        if other := [source for source in sources if source[:compared] != sources[0][:compared]]:
-            raise NetworkError(f"{node.name}: the shapes {sources[0]} and {other[0]} do not fit {node.op}")
-        return height, width, channels if node.op == "add" else sum(source[2] for source in sources)
+    if node.op == "add":
+        if sources[1] != sources[0]:
+            raise NetworkError(f"{node.name}: the shapes {sources[0]} and {sources[1]} do not fit add")
+        return height, width, channels
     rows, columns = -(-height // node.stride), -(-width // node.stride)
     return rows, columns, node.channels if node.op == "conv" else channels
 
@@ -141,8 +135,7 @@ def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
         )
     if node.name in known:
         raise NetworkError(f"{node.name}: the name is used twice")
-    least, most = {"add": (2, 2), "concat": (2, MOST_INPUTS)}.get(node.op, (1, 1))
-    if not least <= len(node.inputs) <= most:
+    if len(node.inputs) != (2 if node.op == "add" else 1):
         raise NetworkError(f"{node.name}: {len(node.inputs)} inputs do not fit {node.op}")
     if unknown := [name for name in node.inputs if name not in known]:
         raise NetworkError(f"{node.name}: its input {unknown[0]} does not come before it")
@@ -151,8 +144,6 @@ def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
     source = known[node.inputs[0]]
     if node.op in WEIGHTED and taps(node, source) > MOST_TAPS:
         raise NetworkError(f"{node.name}: sums {taps(node, source)} products, more than {MOST_TAPS}")
-    if node.op == "mean" and source[0] * source[1] > LARGEST_MEAN:
-        raise NetworkError(f"{node.name}: a mean of more than {LARGEST_MEAN} cells")
 
 
 def _checked_shape(name: str, shape: tuple[int, ...]) -> Shape:

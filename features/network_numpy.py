@@ -54,16 +54,10 @@ class NumpyRunner:
     def _compute(self, node: Node, sources: list[Levels]) -> Levels:
         if node.op == "upsample":
             return sources[0].repeat(2, axis=1).repeat(2, axis=2)
-        if node.op == "concat":
-            return np.concatenate(sources, axis=3)
-        if node.op == "max_pool":
-            return _max_pool(node, sources[0])
         scales = [self._network.quantisation[name] for name in node.inputs]
         result = self._network.quantisation[node.name]
         if node.op == "add":
             return _add(node, sources, scales, result)
-        if node.op == "mean":
-            return _mean(sources[0], scales[0], result)
         layer = self._layers[node.name]
         sums = _weighted_sums(node, layer.weights, sources[0], scales[0].zero)
         return _activate(multiply(sums + layer.biases, layer.factors), result, node.activation)
@@ -100,7 +94,7 @@ def _weighted_sums(node: Node, weights: NDArray[np.floating], levels: Levels, ze
         flat = source.reshape(len(source), weights.shape[0])
         return np.asarray(flat @ weights, np.int64)[:, None, None, :]
     # The zero point was taken off, so what is padded counts as the value 0.
-    parts = _taps(source, node, fill=0)
+    parts = _taps(source, node)
     if node.op == "depthwise":
         sums = sum(part * weights[row, column] for row, column, part in parts)
     else:
@@ -108,11 +102,11 @@ def _weighted_sums(node: Node, weights: NDArray[np.floating], levels: Levels, ze
     return np.asarray(sums, np.int64)
 
 
-def _taps(source: NDArray[np.generic], node: Node, fill: int) -> list[tuple[int, int, NDArray[np.generic]]]:
+def _taps(source: NDArray[np.generic], node: Node) -> list[tuple[int, int, NDArray[np.generic]]]:
     """(row, column, what each output cell sees there) for every place of the kernel."""
     rows, columns = source.shape[1:3]
     padding = same_padding(rows, node.kernel, node.stride), same_padding(columns, node.kernel, node.stride)
-    padded = np.pad(source, ((0, 0), *padding, (0, 0)), constant_values=fill)
+    padded = np.pad(source, ((0, 0), *padding, (0, 0)))
     height, width = -(-rows // node.stride), -(-columns // node.stride)
     parts = []
     for row in range(node.kernel):
@@ -122,17 +116,6 @@ def _taps(source: NDArray[np.generic], node: Node, fill: int) -> list[tuple[int,
             part = padded[:, row : last_row : node.stride, column : last_column : node.stride]
             parts.append((row, column, part))
     return parts
-
-
-def _max_pool(node: Node, source: Levels) -> Levels:
-    parts = [part for _, _, part in _taps(source, node, fill=LOWEST)]
-    return np.asarray(np.maximum.reduce(parts), np.int8)
-
-
-def _mean(source: Levels, own: Quantisation, result: Quantisation) -> Levels:
-    cells = source.shape[1] * source.shape[2]
-    sums = (source.astype(np.int64) - own.zero).sum(axis=(1, 2), keepdims=True)
-    return _activate(multiply(sums, own.scale / (result.scale * cells)), result, "none")
 
 
 def _add(node: Node, sources: list[Levels], scales: list[Quantisation], result: Quantisation) -> Levels:
@@ -148,8 +131,7 @@ def _add(node: Node, sources: list[Levels], scales: list[Quantisation], result: 
 
 def _activate(values: Wide, result: Quantisation, activation: str) -> Levels:
     low, high = LOWEST, HIGHEST
-    if activation != "none":
-        low = max(low, result.zero)
     if activation == "relu6":
+        low = max(low, result.zero)
         high = min(high, result.zero + round(6.0 / result.scale))
     return np.asarray(np.clip(values + result.zero, low, high), np.int8)

@@ -44,6 +44,8 @@ class Network:
 
 
 def _runner(network: IntegerNetwork, backend: Backend) -> Runner:
+    if backend not in ("auto", "litert", "numpy"):
+        raise NetworkError(f"back-end {backend!r}: must be auto, litert or numpy")
     if backend == "numpy":
         return NumpyRunner(network)
     try:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lightgesture.features.classical import ClassicalSelector
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import mirror_box
+from lightgesture.features.image import as_bgr8
 from lightgesture.features.learned import LearnedSelector
 from lightgesture.features.outline import outline_in
 from lightgesture.features.selector_file import load_classical, load_learned
@@ -104,13 +105,14 @@ def find_hands(
 
     image: uint8 (height, width, 3), BGR. mirrored: the picture is a selfie camera's; it is searched
     as it would look unmirrored, so the sides are the diver's own, and the boxes are reported in the
-    given pixels. Raises SelectorError where the bundled data file is damaged.
+    given pixels. Raises SelectorError where the bundled data file is damaged, ValueError for what is no picture.
     """
     stage = _stage(selector)
-    upright = np.ascontiguousarray(image[:, ::-1]) if mirrored else image
+    picture = as_bgr8(image)
+    upright = np.ascontiguousarray(picture[:, ::-1]) if mirrored else picture
     colour = ColourStage().process(upright)
     hands = [outlined(colour, hand) for hand in choose(stage.process(colour), stage.settings)]
-    return [mirror_region(hand, image.shape[1]) for hand in hands] if mirrored else hands
+    return [mirror_region(hand, picture.shape[1]) for hand in hands] if mirrored else hands
 
 
 @lru_cache(maxsize=len(SELECTORS))

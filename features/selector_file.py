@@ -2,6 +2,7 @@
 
 import os
 import zipfile
+import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,12 +21,25 @@ from lightgesture.features.trees import Trees
 VERSION = 2
 LARGEST_FILE = 8 * 1024 * 1024
 """Bytes; a file beyond this is refused unread."""
+LARGEST_UNPACKED = 64 * 1024 * 1024
 BUNDLED = Path(__file__).parent / "data" / "selector.npz"
 BANK_NUMBERS = 2
 """Numbers of a region that come from the bank of outlines."""
 REMEDY = "make it again with: lightgesture train regions"
 
 Parts = TypeVar("Parts")
+
+_DAMAGES = (
+    NetworkError,
+    KeyError,
+    ValueError,
+    TypeError,
+    EOFError,
+    MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+"""What a file that was cut, altered or made by somebody else may cause."""
 
 _ARRAYS = ("feature", "threshold", "left", "right", "value")
 _SCALARS = ("base", "depth")
@@ -115,6 +129,7 @@ def _read(path: str | os.PathLike[str] | None, read: Callable[[Mapping[str, NDAr
     try:
         if file.stat().st_size > LARGEST_FILE:
             raise SelectorError(f"{file}: larger than {LARGEST_FILE} bytes, so it is no selector; {REMEDY}")
+        _check_unpacked_size(file)
         with np.load(file, allow_pickle=False) as stored:
             if int(stored["version"]) != VERSION:
                 raise SelectorError(f"{file}: version {int(stored['version'])}, expected {VERSION}; {REMEDY}")
@@ -123,8 +138,15 @@ def _read(path: str | os.PathLike[str] | None, read: Callable[[Mapping[str, NDAr
         raise
     except OSError as error:
         raise SelectorError(f"{file}: cannot be read ({error.strerror}); {REMEDY}") from None
-    except (NetworkError, KeyError, ValueError, TypeError, EOFError, zipfile.BadZipFile) as error:
+    except _DAMAGES as error:
         raise SelectorError(f"{file}: no valid selector ({error}); {REMEDY}") from None
+
+
+def _check_unpacked_size(file: Path) -> None:
+    """Refuse an archive that would unpack to far more than it is. Raises ValueError."""
+    with zipfile.ZipFile(file) as archive:
+        if sum(member.file_size for member in archive.infolist()) > LARGEST_UNPACKED:
+            raise ValueError(f"it unpacks to more than {LARGEST_UNPACKED} bytes")
 
 
 def _tree_arrays(part: str, trees: Trees) -> dict[str, NDArray[Any]]:

@@ -62,7 +62,9 @@ def train_net(
         optimiser.step()
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
         if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
-            progress(f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}")
+            progress(
+                f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}"
+            )
             state = {"net": net.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict()}
             with replacing(checkpoint) as temporary:
                 torch.save({**state, "step": step + 1}, temporary)

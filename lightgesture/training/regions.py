@@ -2,7 +2,6 @@
 
 import itertools
 import json
-import resource
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -174,7 +173,7 @@ def _write_card(
         "seed": seed,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),
-        "peak_memory_mib": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024,
+        "peak_memory_mib": _peak_memory_mib(),
         "versions": {
             "numpy": np.__version__,
             "opencv": cv2.__version__,
@@ -184,3 +183,12 @@ def _write_card(
     }
     with replacing(out.with_suffix(".json")) as temporary:
         temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")
+
+
+def _peak_memory_mib() -> int | None:
+    """Of this process without its workers; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:
+        return None
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024

@@ -1,0 +1,166 @@
+"""Integer networks: both run-times agree to the last bit, files come back whole, what does not fit is refused."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightgesture.features.network import IntegerNetwork, Quantisation, Weights
+from lightgesture.features.network_file import network_arrays, network_from
+from lightgesture.features.network_nodes import WEIGHTED, NetworkError, Node, infer_shapes, weight_shape
+from lightgesture.features.network_runner import Network
+
+NODES = (
+    Node("stem", "conv", ("x",), 8, 3, 2, "relu6"),
+    Node("wide", "depthwise", ("stem",), 0, 5, 1, "relu6"),
+    Node("point", "conv", ("wide",), 8),
+    Node("sum", "add", ("stem", "point"), activation="relu6"),
+    Node("coarse", "conv", ("sum",), 12, 3, 2),
+    Node("up", "upsample", ("coarse",)),
+    Node("side", "conv", ("sum",), 12),
+    Node("maps", "add", ("side", "up")),
+    Node("hidden", "dense", ("maps",), 16, activation="relu6"),
+    Node("end", "dense", ("hidden",), 5),
+)
+SHAPE = (16, 20, 3)
+
+
+def random_network(seed, nodes=NODES, outputs=("maps", "end"), shape=SHAPE):
+    """A network of every operation with random integers whose outputs use most of their range."""
+    rng = np.random.default_rng(seed)
+    shapes = infer_shapes({"x": shape}, nodes)
+    scales, weights = {"x": Quantisation(0.02, 3)}, {}
+    for node in nodes:
+        if node.op == "upsample":
+            scales[node.name] = scales[node.inputs[0]]
+        elif node.activation == "relu6":
+            scales[node.name] = Quantisation(6 / 255, -128)
+        else:
+            scales[node.name] = Quantisation(float(rng.uniform(0.03, 0.1)), int(rng.integers(-30, 30)))
+        if node.op in WEIGHTED:
+            size, channels = weight_shape(node, shapes[node.inputs[0]]), shapes[node.name][2]
+            levels = rng.integers(-127, 128, size).astype(np.int8)
+            taps = levels.size / channels
+            spread = 6 / (np.sqrt(taps) * 70 * 90 * scales[node.inputs[0]].scale)
+            factors = (rng.uniform(0.5, 2, channels) * spread).astype(np.float32)
+            weights[node.name] = Weights(
+                levels, rng.integers(-3000, 3000, channels).astype(np.int32), factors
+            )
+    network = IntegerNetwork({"x": shape}, tuple(nodes), tuple(outputs), weights, scales)
+    network.check()
+    return network
+
+
+def _input(seed, count, shape=SHAPE):
+    return {"x": np.random.default_rng(seed).integers(-128, 128, (count, *shape)).astype(np.int8)}
+
+
+@given(seed=st.integers(0, 10_000), count=st.sampled_from([1, 3]))
+@settings(max_examples=15, deadline=None)
+def test_both_run_times_give_the_same_integers(seed, count):
+    pytest.importorskip("ai_edge_litert")
+    network, inputs = random_network(seed), _input(seed, count)
+    fast, slow = (Network(network, backend).run(inputs) for backend in ("litert", "numpy"))
+    for name in network.outputs:
+        np.testing.assert_array_equal(fast[name].ravel(), slow[name].ravel())
+        assert slow[name].std() > 0
+
+
+def test_a_net_without_dense_layers_takes_pictures_of_any_size():
+    pytest.importorskip("ai_edge_litert")
+    network = random_network(5, NODES[:8], ("maps",))
+    runners = [Network(network, backend) for backend in ("litert", "numpy")]
+    for shape in ((16, 20, 3), (32, 24, 3), (8, 8, 3), (16, 20, 3)):
+        fast, slow = (runner.run(_input(1, 1, shape))["maps"] for runner in runners)
+        np.testing.assert_array_equal(fast, slow)
+
+
+def test_pictures_of_many_sizes_keep_a_bounded_number_of_plans():
+    pytest.importorskip("ai_edge_litert")
+    from lightgesture.features.network_litert import MOST_PLANNED, LiteRtRunner
+
+    runner = LiteRtRunner(random_network(5, NODES[:8], ("maps",)))
+    for side in range(2, 2 + MOST_PLANNED + 3):
+        runner.run(_input(0, 1, (4 * side, 8, 3)))
+    assert len(runner._planned) == MOST_PLANNED
+
+
+def test_a_network_survives_its_arrays():
+    network = random_network(1)
+    copy = network_from(network_arrays("n", network), "n")
+    assert (copy.nodes, copy.outputs, dict(copy.quantisation)) == (
+        network.nodes,
+        network.outputs,
+        dict(network.quantisation),
+    )
+    inputs = _input(0, 2)
+    first, second = (Network(one, "numpy").run(inputs) for one in (network, copy))
+    np.testing.assert_array_equal(first["end"], second["end"])
+
+
+@pytest.mark.parametrize(
+    ("node", "reason"),
+    [
+        (Node("bad", "pickle", ("x",)), "unknown operation"),
+        (Node("bad", "conv", ("later",), 4), "later"),
+        (Node("stem", "conv", ("x",), 4), "stem"),
+        (Node("bad", "conv", ("x",), 4, 99), "bad"),
+        (Node("bad", "conv", ("x",), 10**6), "bad"),
+        (Node("bad", "add", ("x", "stem")), "do not fit"),
+        (Node("bad", "conv", ("x",), 4, activation="tanh"), "tanh"),
+        (Node("../bad", "conv", ("x",), 4), "name"),
+    ],
+)
+def test_a_node_that_does_not_fit_is_refused_in_one_line(node, reason):
+    with pytest.raises(NetworkError, match=reason) as caught:
+        infer_shapes({"x": SHAPE}, [NODES[0], node])
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "array"),
+    [
+        ("n_stem_weights", np.zeros((1, 1), np.int8)),
+        ("n_stem_weights", np.zeros((8, 3, 3, 3), np.float64)),
+        ("n_stem_scales", np.full(8, np.nan, np.float32)),
+        ("n_stem_scales", np.zeros(8, np.float32)),
+        ("n_layout", np.frombuffer(b'{"nodes": 3}', np.uint8)),
+        ("n_layout", np.zeros(10**6, np.uint8)),
+    ],
+)
+def test_arrays_that_are_no_network_are_refused_in_one_line(name, array):
+    arrays = {**network_arrays("n", random_network(0)), name: array}
+    with pytest.raises(NetworkError) as caught:
+        network_from(arrays, "n")
+    assert "\n" not in str(caught.value)
+
+
+def test_without_lite_rt_the_reference_runs_and_a_wish_for_it_is_told(monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "ai_edge_litert", None)
+    network = random_network(2)
+    assert Network(network, "auto").run(_input(0, 1))["end"].size == 5
+    with pytest.raises(NetworkError, match="pip install ai-edge-litert"):
+        Network(network, "litert")
+    with pytest.raises(NetworkError, match="must be auto, litert or numpy"):
+        Network(network, "tflite")
+
+
+def test_a_trained_network_and_its_integers_nearly_agree():
+    torch = pytest.importorskip("torch")
+    from lightgesture.training.quantise import quantise
+    from lightgesture.training.torch_network import TorchNetwork
+
+    torch.manual_seed(0)
+    module = TorchNetwork({"x": SHAPE}, NODES, ("maps", "end"))
+    batch = torch.rand(32, 3, 16, 20) * 2 - 1
+    for _ in range(20):
+        module({"x": batch})
+    network = quantise(module, [{"x": batch}], {"x": (-1.0, 1.0)})
+    runner = Network(network, "numpy")
+    found = runner.run({"x": runner.table("x", batch.permute(0, 2, 3, 1).numpy())})
+    with torch.no_grad():
+        expected = module({"x": batch})["maps"].permute(0, 2, 3, 1).numpy()
+    step = network.quantisation["maps"].scale
+    assert np.abs(found["maps"] - expected).mean() < 3 * step

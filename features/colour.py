@@ -12,6 +12,7 @@ from functools import cached_property
 import cv2
 
 from lightgesture.features.image import as_bgr8
+from lightgesture.features.profile import ColourProfile
 from lightgesture.features.skin_map import SkinMapSettings, skin_map
 from lightgesture.features.types import Image
 
@@ -74,10 +75,14 @@ def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:
 
 
 class ColourStage:
-    """Frame -> colour map."""
+    """Frame -> colour map.
 
-    def __init__(self, settings: ColourSettings | None = None) -> None:
+    profile: the colours of this diver's hands; None for the default map, on which any skin is bright.
+    """
+
+    def __init__(self, settings: ColourSettings | None = None, profile: ColourProfile | None = None) -> None:
         self.settings = settings or ColourSettings()
+        self.profile = profile
 
     def process(self, image: Image) -> ColourMap:
         """Make the colour map of one frame of any size from 1 × 1, BGR or what `as_bgr8` makes of it.
@@ -90,4 +95,6 @@ class ColourStage:
         return ColourMap(picture, detail, scale, (width, height), self._skin)
 
     def _skin(self, picture: Image) -> Image:
+        if self.profile is not None:
+            return self.profile.map(picture)
         return skin_map(picture, self.settings.skin)

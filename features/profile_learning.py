@@ -1,0 +1,166 @@
+"""Colour profiles learnt from pictures whose hands are known.
+
+As in Jones and Rehg, "Statistical Color Models with Application to Skin Detection", IJCV 46(1), 2002: one histogram
+says how often hands have a colour, another how often other things have it, and the profile is the logarithm of their
+ratio.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.profile import UNDECIDED, ColourProfile, Kind, colour_cells
+from lightgesture.features.proposals import propose
+from lightgesture.features.types import Box, Image
+
+Float = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class LearningSettings:
+    """How a profile is learnt.
+
+    bins: cells of each channel, 4 to 24. reach: standard deviations that they span to either side, 1 to 3.
+    smoothing: of the histograms, standard deviation in cells, 0.3 to 3: by so much light and shade vary one glove. More
+        lets pale gloves run into pale water.
+    unseen: share of the other things that is taken to have any colour at all, 0.05 to 1: the next place looks
+        different from the one that was learnt from.
+    steepness: natural logarithm of the ratio at which the map ends, at 0 or at 255; 1 to 8.
+    inside: axes of the ellipse within a hand's box that is taken for hand at first, over the box's sides.
+    outside: sides round the box beyond which everything is something else, over the box's.
+    """
+
+    bins: int = 16
+    reach: float = 3.0
+    smoothing: float = 0.5
+    unseen: float = 0.3
+    steepness: float = 4.0
+    inside: float = 0.6
+    outside: float = 1.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Known:
+    """One picture: the cell of each pixel, (h, w); which pixels are hand, which surely are not, and which may be."""
+
+    cells: NDArray[np.intp]
+    hand: Mask
+    other: Mask
+    doubtful: Mask
+
+
+def learn_profile(
+    images: Sequence[Image],
+    hands: Sequence[Sequence[Box] | Mask],
+    kind: Kind,
+    origin: str,
+    settings: LearningSettings | None = None,
+) -> ColourProfile:
+    """Learn a profile.
+
+    images: uint8 (h, w, 3), BGR; a dozen of the size of the working picture are plenty. hands: for each picture the
+    boxes of all its hands, or a mask of them, bool (h, w). A hand that is left out is learnt as something else.
+    Raises ValueError, one line, where no picture shows a hand.
+    """
+    settings = settings or LearningSettings()
+    if len(images) != len(hands):
+        raise ValueError(f"{len(images)} pictures and hands of {len(hands)}; give the hands of each picture")
+    known = [_known(image, shown, settings) for image, shown in zip(images, hands, strict=True)]
+    known = [picture for picture in known if picture.hand.any() and picture.other.any()]
+    if not known:
+        raise ValueError("no picture shows a hand and something else; show open hands at arm's length")
+    first = _levels(_counts(known, settings), settings)
+    known = [_refined(picture, first) for picture in known]
+    levels = _levels(_counts(known, settings), settings)
+    return ColourProfile(kind, origin, _separation(known, settings), settings.reach, levels)
+
+
+def proposed_share(
+    images: Sequence[Image],
+    boxes: Sequence[Sequence[Box]],
+    profile: ColourProfile | None = None,
+    least_iou: float = 0.5,
+) -> float:
+    """Share of the hands for which the map has a region that fits, 0 to 1: what a profile is worth, beside None.
+
+    boxes: for each picture those of its hands; without any the share is 0. least_iou: from which a region fits.
+    """
+    stage = ColourStage(profile=profile)
+    fits, hands = 0, 0
+    for image, wanted in zip(images, boxes, strict=True):
+        colour = stage.process(image)
+        truth = np.array(wanted, np.float64).reshape(-1, 4) / np.tile(colour.scale, 2)
+        overlap = pairwise_iou(propose(colour).boxes, truth)
+        fits += int((overlap >= least_iou).any(axis=0).sum())
+        hands += len(truth)
+    return fits / max(hands, 1)
+
+
+def _known(image: Image, hands: Sequence[Box] | Mask, settings: LearningSettings) -> _Known:
+    cells = colour_cells(image, settings.bins, settings.reach)
+    nothing = np.zeros(cells.shape, bool)
+    if isinstance(hands, np.ndarray):
+        return _Known(cells, hands, ~hands, nothing)
+    hand, other, doubtful = nothing, ~nothing, nothing.copy()
+    rows, columns = np.ogrid[: cells.shape[0], : cells.shape[1]]
+    for x, y, width, height in hands:
+        across = np.abs(columns + 0.5 - x - width / 2) / (width / 2)
+        down = np.abs(rows + 0.5 - y - height / 2) / (height / 2)
+        hand |= np.square(across) + np.square(down) < settings.inside**2
+        other &= np.maximum(across, down) > settings.outside
+        doubtful |= np.maximum(across, down) <= 1.0
+    return _Known(cells, hand, other, doubtful)
+
+
+def _refined(picture: _Known, levels: NDArray[np.uint8]) -> _Known:
+    """Fingers lie outside the ellipse and water inside it: what looks like a hand within its box is the hand."""
+    alike = levels.ravel()[picture.cells] > UNDECIDED
+    hand = np.where(picture.doubtful, alike, picture.hand)
+    return _Known(picture.cells, hand, picture.other, picture.doubtful)
+
+
+def _counts(known: Sequence[_Known], settings: LearningSettings) -> Float:
+    """How many pixels of hands and of other things fall into each cell, (2, bins³); every picture counts the same."""
+    counts = np.zeros((2, settings.bins**3))
+    for picture in known:
+        for row, chosen in zip(counts, (picture.hand, picture.other), strict=True):
+            found = np.bincount(picture.cells[chosen], minlength=settings.bins**3)
+            row += found / max(int(found.sum()), 1)
+    return counts
+
+
+def _levels(counts: Float, settings: LearningSettings) -> NDArray[np.uint8]:
+    """The table of a profile, uint8 (bins, bins, bins)."""
+    bins = settings.bins
+    steps = np.arange(bins)
+    kernel = np.exp(-0.5 * np.square((steps[:, None] - steps) / settings.smoothing))
+    kernel /= kernel.sum(axis=0)
+    shares = (counts / np.maximum(counts.sum(axis=1, keepdims=True), 1e-12)).reshape(2, bins, bins, bins)
+    hand, other = np.einsum("ai,bj,ck,nijk->nabc", kernel, kernel, kernel, shares, optimize=True)
+    even = 1.0 / bins**3
+    other = (1.0 - settings.unseen) * other + settings.unseen * even
+    # A trace of the even share keeps the logarithm of a colour that hands never had finite.
+    ratio = np.log(np.maximum(hand, 1e-3 * even) / other)
+    return np.asarray(np.clip(UNDECIDED + ratio * (127.5 / settings.steepness), 0, 255), np.uint8)
+
+
+def _separation(known: Sequence[_Known], settings: LearningSettings) -> float:
+    """Area under the ROC curve over pixels: each half of the pictures judged by what the other half teaches.
+
+    A single picture is judged by itself, which flatters it.
+    """
+    halves = (known[::2], known[1::2]) if len(known) > 1 else (known, known)
+    counts = [_counts(half, settings) for half in halves]
+    areas = []
+    for taught, judged in (counts, counts[::-1]):
+        levels = _levels(taught, settings).ravel()
+        hand, other = (
+            np.bincount(levels, weights=row, minlength=256) / max(row.sum(), 1e-12) for row in judged
+        )
+        areas.append(float(hand @ (np.cumsum(other) - 0.5 * other)))
+    return float(np.mean(areas))

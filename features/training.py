@@ -79,6 +79,8 @@ def _describe_picture(stage: ColourStage, picture: BoxedPicture, bank: Bank) -> 
 def fit_trees(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Trees:
     from sklearn.ensemble import HistGradientBoostingRegressor
 
+    if not len(rows):
+        raise ValueError("no region was proposed in any picture; train the nets for more steps")
     model = HistGradientBoostingRegressor(
         max_iter=settings.trees,
         learning_rate=settings.rate,

@@ -59,7 +59,13 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     }
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
     run("decode", make_folder("frames", 2))
-    assert fake.made[-1].options == {"model": "svm", "hold": None, "grammar": None, "mirrored": False}
+    assert fake.made[-1].options == {
+        "model": "svm",
+        "selector": "learned",
+        "hold": None,
+        "grammar": None,
+        "mirrored": False,
+    }
 
 
 def test_files(run, make_video, tmp_path):

@@ -39,11 +39,15 @@ def draw_colour(colour: ColourMap) -> Image:
 
 
 def draw_regions(image: Image, candidates: Candidates) -> Image:
-    """The outlines of the candidates with their scores, the best green."""
+    """The outlines of the candidates, or their boxes where none was drawn, with their scores, the best green."""
     picture = image.copy()
     for rank, region in enumerate(candidates.regions):
         colour = _GREEN if rank < 2 else _YELLOW
-        cv2.polylines(picture, [region.contour.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
+        if len(region.contour):
+            cv2.polylines(picture, [region.contour.reshape(-1, 1, 2)], True, colour, 1, cv2.LINE_AA)
+        else:
+            x, y, width, height = region.box
+            cv2.rectangle(picture, (x, y), (x + width, y + height), colour, 1)
         draw_label(picture, f"{region.confidence:.2f}", region.box[:2], colour)
     return picture
 

@@ -177,3 +177,20 @@ def test_no_sighting_asks_no_classifier():
     classifier = FakeClassifier([])
     assert ReadingStage(classifier).process(_noise(), []) == ()
     assert classifier.asked == []
+
+
+def test_the_picture_of_the_regions_shows_a_box_where_there_is_no_outline():
+    from lightgesture.features.types import Candidates, HandRegion
+    from lightgesture.stage_pictures import draw_regions
+
+    empty = np.zeros((0, 2), np.int32)
+    outline = np.array([[50, 20], [60, 20], [55, 35]], np.int32)
+    regions = (
+        HandRegion((5, 20, 20, 30), empty, None, 0.8),
+        HandRegion((50, 20, 11, 16), outline, None, 0.6),
+    )
+    picture = draw_regions(
+        np.zeros((60, 80, 3), np.uint8), Candidates(regions, np.zeros((2, 2), np.float32), (80, 60))
+    )
+    assert picture[35, 5].any()
+    assert picture[20, 55].any()

@@ -11,10 +11,13 @@ from functools import cached_property
 
 import cv2
 
-from lightgesture.features.image import as_bgr8
+from lightgesture.features.image import as_bgr8, check_frame
 from lightgesture.features.profile import ColourProfile
 from lightgesture.features.skin_map import SkinMapSettings, skin_map
 from lightgesture.features.types import Image
+
+LONGEST_SIDE = 1024
+"""Pixels of the working picture: of a frame of 1 × 100,000, which no camera gives, less is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +69,17 @@ def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:
     """
     height, width = image.shape[:2]
     ratio = (pixels / (height * width)) ** 0.5
-    if ratio >= 1.0:
+    if ratio >= 1.0 and max(height, width) <= LONGEST_SIDE:
         return image, image
-    target = max(1, round(width * ratio)), max(1, round(height * ratio))
-    if ratio < 0.5:
+    ratio = min(ratio, 1.0)
+    target = _side(width * ratio), _side(height * ratio)
+    if ratio < 0.5 or max(height, width) > 2 * LONGEST_SIDE:
         image = cv2.resize(image, (2 * target[0], 2 * target[1]), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
     return cv2.resize(image, target, interpolation=cv2.INTER_AREA), image  # type: ignore[return-value]
+
+
+def _side(length: float) -> int:
+    return min(max(round(length), 1), LONGEST_SIDE)
 
 
 class ColourStage:
@@ -89,7 +97,9 @@ class ColourStage:
 
         Raises ValueError, one line, for an array that is no picture.
         """
-        picture, detail = reduce_picture(as_bgr8(image), self.settings.working_pixels)
+        check_frame(image)
+        # Reduced first: of a huge frame of 16 bits only what is looked at is converted.
+        picture, detail = (as_bgr8(part) for part in reduce_picture(image, self.settings.working_pixels))
         height, width = image.shape[:2]
         scale = width / picture.shape[1], height / picture.shape[0]
         return ColourMap(picture, detail, scale, (width, height), self._skin)

@@ -1,0 +1,131 @@
+"""Frames that no camera should give: bounded time and memory, no exception, no hand that is not there."""
+
+import time
+import tracemalloc
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.features import find_hands
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.curvature import curvature_points
+from lightgesture.features.profile import ColourProfile
+from lightgesture.features.proposals import propose
+from lightgesture.features.shape import convexity_defects, solidity
+
+SKIN, WATER = (110, 140, 200), (150, 120, 40)
+MOST_SECONDS = 3.0
+"""For any frame, on a machine that is busy with other things; a usual frame takes a few milliseconds."""
+
+RAMP = np.linspace(0, 255, 16, dtype=np.uint8)
+PROFILE = ColourProfile("glove", "blue", 0.9, 3.0, np.broadcast_to(RAMP[:, None, None], (16, 16, 16)).copy())
+
+
+def _specks(count, seed=3):
+    rng = np.random.default_rng(seed)
+    image = np.full((480, 640, 3), WATER, np.uint8)
+    for x, y in zip(rng.integers(0, 640, count), rng.integers(0, 480, count), strict=True):
+        image[y : y + 2, x : x + 2] = SKIN
+    return image
+
+
+EMPTY = {
+    "black": np.zeros((480, 640, 3), np.uint8),
+    "white": np.full((480, 640, 3), 255, np.uint8),
+    "constant": np.full((480, 640, 3), (90, 130, 110), np.uint8),
+    "all skin": np.full((480, 640, 3), SKIN, np.uint8),
+    "1x1": np.full((1, 1, 3), 200, np.uint8),
+    "2x3": np.arange(18, dtype=np.uint8).reshape(2, 3, 3),
+    "short row": np.full((1, 19_000, 3), 90, np.uint8),
+    "one row": np.full((1, 100_000, 3), 90, np.uint8),
+    "one column": np.full((100_000, 1, 3), 90, np.uint8),
+    "grey": np.full((480, 640), 100, np.uint8),
+    "16-bit": np.full((480, 640, 3), 30_000, np.uint16),
+    "16-bit grey": np.full((480, 640), 30_000, np.uint16),
+    "four channels": np.full((480, 640, 4), 100, np.uint8),
+}
+
+BUSY = {
+    "specks": _specks(10_000),
+    "noise": np.random.default_rng(1).integers(0, 256, (480, 640, 3), np.uint8),
+    "grey noise": np.random.default_rng(2).integers(0, 256, (480, 640), np.uint8),
+    "16-bit noise": np.random.default_rng(4).integers(0, 65_536, (480, 640, 4), np.uint16),
+    "chequers": np.kron(np.indices((120, 160)).sum(axis=0) % 2 * 255, np.ones((4, 4), int)).astype(np.uint8),
+}
+
+
+@pytest.mark.parametrize("image", EMPTY.values(), ids=EMPTY.keys())
+def test_frames_of_nothing_hold_no_region_and_no_hand(image):
+    for profile in (None, PROFILE):
+        colour = ColourStage(profile=profile).process(image)
+        assert colour.picture.ndim == 3
+        assert colour.skin.shape == colour.picture.shape[:2]
+        assert colour.source_size == (image.shape[1], image.shape[0])
+        assert len(propose(colour)) == 0
+    assert find_hands(image) == []
+
+
+@pytest.mark.parametrize("image", BUSY.values(), ids=BUSY.keys())
+@pytest.mark.parametrize("profile", [None, PROFILE], ids=["default", "profile"])
+def test_frames_of_everything_take_bounded_time(image, profile):
+    start = time.perf_counter()
+    proposals = propose(ColourStage(profile=profile).process(image))
+    for contour in proposals.contours:
+        assert 0.0 < solidity(contour) <= 1.0
+        assert np.isfinite(convexity_defects(contour).depth).all()
+        assert np.isfinite(curvature_points(contour).fingertips).all()
+    assert time.perf_counter() - start < MOST_SECONDS
+    assert len(proposals) <= 160
+
+
+@pytest.mark.parametrize("image", BUSY.values(), ids=BUSY.keys())
+def test_frames_of_everything_hold_no_hand(image):
+    assert find_hands(image) == []
+
+
+@pytest.mark.parametrize(
+    "image",
+    [
+        np.zeros((6000, 8000, 3), np.uint8),
+        np.zeros((6000, 8000, 3), np.uint16),
+        np.zeros((6000, 8000), np.uint8),
+    ],
+    ids=["8000x6000", "8000x6000 16-bit", "8000x6000 grey"],
+)
+def test_huge_frames_take_bounded_time_and_memory(image):
+    tracemalloc.start()
+    start = time.perf_counter()
+    colour = ColourStage().process(image)
+    regions = len(propose(colour))
+    seconds = time.perf_counter() - start
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert regions == 0
+    assert colour.picture.shape[:2] == (120, 160)
+    assert seconds < MOST_SECONDS
+    # Only what is looked at is converted: no second copy of the frame.
+    assert most < 20e6
+
+
+def test_odd_kinds_of_a_frame_give_the_map_of_the_plain_one():
+    plain = cv2.GaussianBlur(_specks(300), (31, 31), 0)
+    stage = ColourStage()
+    expected = stage.process(plain)
+    for other in (
+        np.dstack([plain, np.zeros((480, 640), np.uint8)]),
+        np.asfortranarray(plain),
+        plain[:, ::-1][:, ::-1],
+    ):
+        found = stage.process(other)
+        np.testing.assert_array_equal(found.picture, expected.picture)
+        np.testing.assert_array_equal(found.skin, expected.skin)
+    sixteen = stage.process(plain.astype(np.uint16) * 257)
+    # Averaging sixteen bits and rounding once differs by a level from averaging eight and rounding at each step.
+    assert np.abs(sixteen.picture.astype(int) - expected.picture).max() <= 1
+
+
+@pytest.mark.parametrize("image", [np.zeros((4, 4, 3)), np.zeros((0, 4, 3), np.uint8), np.zeros(4, np.uint8)])
+def test_what_is_no_frame_is_refused_in_one_line(image):
+    with pytest.raises(ValueError, match=r"frame of .*convert it first"):
+        ColourStage().process(image)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -89,6 +90,8 @@ def _source_by_source(rows: Sequence[dict[str, str]], rng: np.random.Generator) 
 
 def _cut_out_outline(data: Path, row: dict[str, str]) -> Contour | None:
     image = read_picture(data / "hands" / row["path"])
+    # GrabCut starts its clusters by a generator of OpenCV that goes on from call to call.
+    cv2.setRNGSeed(0)
     hand = cut_out(image, read_landmarks(row), row["token"], row["set"])
     return None if hand is None else outline((hand.alpha > 0.5).astype(np.uint8))
 

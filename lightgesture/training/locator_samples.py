@@ -93,7 +93,8 @@ def _transformed(
         )
         own = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
         image = small
-    matrix = np.column_stack([linear * own, shift + linear @ (0.5 * (own - 1))])
+    # Boxes count from corners of pixels, warpAffine from their centres.
+    matrix = np.column_stack([linear * own, shift + linear @ (0.5 * own) - 0.5])
     return np.asarray(
         cv2.warpAffine(image, matrix, (WIDTH, HEIGHT), borderMode=fill, borderValue=mean), np.uint8
     )

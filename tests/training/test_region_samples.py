@@ -1,5 +1,7 @@
 """Samples of both nets: boxes move with their pictures, targets say where hands are, few steps of training run."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -24,6 +26,46 @@ def test_a_drawn_ellipse_stays_in_its_box(seed):
     x, y, width, height = cv2.boundingRect((image[..., 0] > 127).astype(np.uint8))
     seen = np.clip(hands[0], 0, (160, 120, 160, 120))
     assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=2.0)
+
+
+def test_boxes_and_pictures_do_not_drift_apart():
+    # A filled rectangle covers the pixels of its box and no other, which OpenCV's ellipse does not.
+    square = np.zeros((240, 320, 3), np.uint8)
+    square[80:160, 120:180] = 255
+    picture, offsets = replace(a_picture(), image=square), []
+    for seed in range(40):
+        image, hands, _ = warp(picture, np.random.default_rng(seed), (0.6, 1.5), LocatorSampling())
+        corners = hands[0]
+        if corners.min() < 3 or corners[2] > 157 or corners[3] > 117:
+            continue  # the border may continue what it cuts
+        weights = np.clip(image[..., 0].astype(np.float64) - 60, 0, None)
+        y, x = np.mgrid[0:120, 0:160] + 0.5
+        seen = np.array([(weights * x).sum(), (weights * y).sum()]) / weights.sum()
+        offsets.append(seen - (corners[:2] + corners[2:]) / 2)
+    assert len(offsets) > 20
+    assert np.mean(offsets, axis=0) == pytest.approx((0, 0), abs=0.05)
+    assert np.abs(offsets).max() < 0.4
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_samples_repeat_for_a_seed(seed):
+    pictures, empty = [a_picture()], [a_picture(())]
+    located = LocatorSamples(pictures, empty, pictures)
+    (first, maps), (again, same) = (located.draw(np.random.default_rng(seed)) for _ in "ab")
+    np.testing.assert_array_equal(first, again)
+    for name in ("heat", "weight", "box", "box_weight"):
+        np.testing.assert_array_equal(getattr(maps, name), getattr(same, name))
+    assert first.shape == (128, 160, 3)
+    assert not first[120:].any()
+    assert np.abs(first).max() <= 3
+
+    false = np.array([[10, 10, 30, 40.0]], np.float32)
+    kinds = [[(picture, false)] for picture in (*pictures, *empty, *pictures)]
+    drawn, repeated = (RefinerSamples(*kinds).draw(np.random.default_rng(seed)) for _ in "ab")
+    for one, other in zip(drawn, repeated, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert drawn[0].shape == (8, 32, 32, 4)
+    assert set(drawn[1][:, 0]) <= {0.0, 1.0}
 
 
 def test_targets_are_hottest_in_the_middle_and_measure_to_the_edges():
@@ -54,6 +96,21 @@ def test_another_light_repeats_for_a_seed():
     )
     np.testing.assert_array_equal(first, again)
     assert first.dtype == np.uint8
+
+
+def test_without_any_change_the_light_stays_and_each_change_is_felt():
+    picture = np.clip(a_picture().image, 90, 200)
+    shares = ("water", "dark", "gamma", "balance", "contrast", "grey", "blurred", "noisy")
+    still = PhotometricSettings(**dict.fromkeys(shares, 0.0))
+    kept = photometric(picture, np.random.default_rng(0), True, still)
+    np.testing.assert_allclose(kept.astype(int), picture, atol=1)
+    coloured = picture * np.array([1, 0, 1], np.uint8)
+    for share in shares:
+        changed = photometric(coloured, np.random.default_rng(0), True, replace(still, **{share: 1.0}))
+        assert np.abs(changed.astype(int) - coloured).max() > 2, share
+    dry = replace(still, water=0.5, dark=0.5)
+    composed = photometric(picture, np.random.default_rng(0), False, dry)
+    np.testing.assert_allclose(composed.astype(int), picture, atol=1)
 
 
 def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):

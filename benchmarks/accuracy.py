@@ -3,8 +3,8 @@
 `lightgesture evaluate` is the thin command in front of this module.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
@@ -55,10 +55,13 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Tables of an evaluation, and the failures behind them by the name of their contact sheet."""
+    """Tables of an evaluation, and the failures behind them by the name of their contact sheet: as pictures to be read
+    and drawn, or as tiles that are drawn already.
+    """
 
     tables: tuple[Table, ...]
     failures: dict[str, list[Failure]]
+    tiles: Mapping[str, Sequence[Image]] = field(default_factory=dict)
 
 
 def evaluate_hands(classifier: Classifier, model: str, data: Path, progress: Progress) -> Report:
@@ -118,13 +121,15 @@ def save_failures(
 ) -> list[Path]:
     """Draw a contact sheet per list of failures; returns the files written. suffix: .jpg, or .png for exact pixels."""
     written = []
-    for name, failures in report.failures.items():
-        chosen = choose_evenly(len(failures))
-        if len(chosen) < len(failures):
-            warn(f"{name}: shows {len(chosen)} of {len(failures)} failures")
+    for name in (*report.failures, *report.tiles):
+        failures, tiles = report.failures.get(name, []), report.tiles.get(name, ())
+        count = len(failures) + len(tiles)
+        chosen = choose_evenly(count)
+        if len(chosen) < count:
+            warn(f"{name}: shows {len(chosen)} of {count} failures")
         if chosen:
             path = folder / f"{name}{suffix}"
-            save_sheet(path, [_tile(failures[index]) for index in chosen])
+            save_sheet(path, [tiles[index] if tiles else _tile(failures[index]) for index in chosen])
             written.append(path)
     return written
 

@@ -12,15 +12,11 @@ import numpy as np
 
 import lightgesture.synth
 from lightgesture.benchmarks.suite_cache import Take, source_digest
-from lightgesture.benchmarks.suite_scenarios import Scenario, scene_spec
+from lightgesture.benchmarks.suite_scenarios import ALONE, FIRST_SEED, PROFILE, Scenario, scene_spec
 from lightgesture.synth.hand import decode, encode
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.scene import Scene, SceneFrame
 from lightgesture.synth.variety import stream
-
-ALONE, PROFILE = "alone", "profile"
-FIRST_SEED = 7_000_500
-"""Within SUITE_SEEDS; two seeds follow for every difficulty."""
 
 SENTENCES = ("STOP HOVER 50 GO", "CONTD PARAM 3 DECREASE GO")
 """One scene each."""
@@ -123,7 +119,7 @@ def _scenarios() -> list[Scenario]:
     named = [(name, sentence) for name in DIFFICULTIES for sentence in SENTENCES]
     return [
         Scenario(ALONE, (sentence,), name, "room" if name in IN_ROOMS else "water", seed)
-        for seed, (name, sentence) in enumerate(named, FIRST_SEED)
+        for seed, (name, sentence) in enumerate(named, FIRST_SEED[ALONE])
     ]
 
 

@@ -15,6 +15,7 @@ from lightgesture.benchmarks.methods import Image, PipelineMethod
 from lightgesture.benchmarks.regions import Progress, Run, run_sequence, run_single
 from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.profile import ColourProfile
 from lightgesture.features.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Box
@@ -67,10 +68,12 @@ def variant(name: str, stages: Stages) -> PipelineMethod:
     return PipelineMethod(name, lambda _: FindingPipeline(stages))
 
 
-def selector_method(selector: str, file: str | None = None) -> PipelineMethod:
+def selector_method(
+    selector: str, file: str | None = None, profile: ColourProfile | None = None
+) -> PipelineMethod:
     """A method that finds by one of SELECTORS, with what `file` holds instead of what is bundled, called after both.
 
-    selector may be a file itself, whose learned choice is then taken. Raises
+    selector may be a file itself, whose learned choice is then taken. profile: the colours of the hands. Raises
     lightgesture.features.selector_file.SelectorError.
     """
     if selector not in SELECTORS:
@@ -78,7 +81,10 @@ def selector_method(selector: str, file: str | None = None) -> PipelineMethod:
     name: SelectorName = "classical" if selector == "classical" else "learned"
     label = name if file is None else f"{name}, {Path(file).stem}"
     stage = RegionStage(name, file)
-    return variant(label, Stages(regions=lambda: stage))
+    if profile is None:
+        return variant(label, Stages(regions=lambda: stage))
+    coloured = Stages(colour=lambda: ColourStage(profile=profile), regions=lambda: stage)
+    return variant(f"{label}, profile", coloured)
 
 
 def run_left_out(

@@ -19,7 +19,16 @@ SUITE_SEEDS = range(7_000_000, 7_001_000)
 
 WATER, LAND, REAL, NEGATIVE = "water", "land", "real", "negative"
 SUITES = (WATER, LAND, REAL, NEGATIVE)
-FIRST_SEED = {WATER: 7_000_000, LAND: 7_000_100, REAL: 7_000_200, NEGATIVE: 7_000_300}
+ALONE, PROFILE = "alone", "profile"
+"""Short clips of one difficulty each, and what a colour profile is learnt from (see `difficulties`)."""
+FIRST_SEED = {
+    WATER: 7_000_000,
+    LAND: 7_000_100,
+    REAL: 7_000_200,
+    NEGATIVE: 7_000_300,
+    ALONE: 7_000_500,
+    PROFILE: 7_000_500,
+}
 
 SIZE = (480, 360)
 FPS = 30.0

@@ -96,15 +96,28 @@ def count_switches(frames: Iterable[tuple[Sequence[Label], Sequence[Reading]]]) 
     The identity is the track, or the side for a method without tracks (IDSW of Bernardin and Stiefelhagen, "Evaluating
     multiple object tracking performance", EURASIP JIVP 2008).
     """
+    return len(_switches(frames))
+
+
+def count_restarts(frames: Iterable[tuple[Sequence[Label], Sequence[Reading]]]) -> int:
+    """How many of the switches are to an identity that no hand had before: the track was lost and begun anew."""
+    return sum(_switches(frames))
+
+
+def _switches(frames: Iterable[tuple[Sequence[Label], Sequence[Reading]]]) -> list[bool]:
+    """For each switch whether it is a restart."""
     last: dict[str, int | str | None] = {}
-    switches = 0
+    known: set[int | str | None] = set()
+    switches = []
     for labels, readings in frames:
         for label, (reading, _) in zip(labels, matched_readings(labels, readings), strict=True):
             if reading is None or label.side is None:
                 continue
             identity = reading.side if reading.track is None else reading.track
-            switches += label.side in last and last[label.side] != identity
+            if label.side in last and last[label.side] != identity:
+                switches.append(identity not in known)
             last[label.side] = identity
+            known.add(identity)
     return switches
 
 

@@ -49,9 +49,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="with suite: a part (water, land, real, negative) or a clip such as water-03 (repeatable)",
     )
     parser.add_argument(
-        "--jobs", type=int, default=1, metavar="N", help="with suite: processes that render clips (default 1)"
+        "--jobs", type=int, default=1, metavar="N", help="processes that render clips (default 1)"
     )
-    parser.add_argument("--quick", action="store_true", help="with suite: every fifth clip")
+    parser.add_argument("--quick", action="store_true", help="with suite or --clips: every fifth clip")
     parser.add_argument("--out", metavar="DIR", help="write contact sheets of the failures here")
 
 
@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.opening import make_folder
     from lightgesture.threads import OneBlasThread
 
-    if args.target != SUITE and (args.only or args.quick):
+    if args.target != SUITE and (args.only or (args.quick and not args.clips)):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
     for option in evaluate_regions.OPTIONS:
         if args.target != REGIONS and getattr(args, option):
@@ -107,7 +107,8 @@ def reports(args: argparse.Namespace, targets: "Sequence[str]", data: Path) -> "
     if classifier is not None and HANDS in targets:
         yield accuracy.evaluate_hands(classifier, model, data, show_progress), ".jpg"
     if REGIONS in targets:
-        yield evaluate_regions.find_hands(args, data, show_progress), ".png"
+        for report in evaluate_regions.find_hands(args, data, show_progress):
+            yield report, ".png"
     if classifier is not None and REGIONS in targets:
         methods = accuracy.default_methods(classifier, model, data)
         yield accuracy.evaluate_regions(methods, data, show_progress), ".jpg"

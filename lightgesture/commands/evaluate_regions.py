@@ -1,17 +1,28 @@
 """`lightgesture evaluate regions`: hands found by every selector, and with `--model` what is read of them."""
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from lightgesture.console import say
 from lightgesture.errors import UsageError
 
 if TYPE_CHECKING:
-    from lightgesture.benchmarks.accuracy import Report
-    from lightgesture.benchmarks.regions import Progress
+    from collections.abc import Iterable
 
-OPTIONS = ("selector", "fold", "compare")
+    from lightgesture.benchmarks.accuracy import Report
+
+Item = TypeVar("Item")
+
+
+class Progress(Protocol):
+    """Passes items on and shows how far they are, under a heading."""
+
+    def __call__(self, items: "Iterable[Item]", heading: str, /) -> "Iterable[Item]": ...
+
+
+OPTIONS = ("selector", "fold", "compare", "clips")
 """Options that only this target has."""
 
 
@@ -36,13 +47,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="with regions: JSON Lines of boxes that another program found, as further rows (repeatable)",
     )
+    parser.add_argument(
+        "--clips",
+        action="store_true",
+        help="with regions: also on the suite's clips and on short ones of one difficulty each, rendered at first",
+    )
 
 
-def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "Report":
-    """Score the finding of hands on the pictures of a data folder. UsageError: a selector file is damaged."""
-    from lightgesture.benchmarks.finding_report import FindingRequest, evaluate_finding
-    from lightgesture.features.selector import SELECTORS
+def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":
+    """Score the finding of hands, one report after the other. UsageError: a selector file is damaged."""
     from lightgesture.features.selector_file import SelectorError
+
+    try:
+        yield from _reports(args, data, progress)
+    except SelectorError as error:
+        raise UsageError(str(error)) from error
+
+
+def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":
+    from lightgesture.benchmarks.finding_report import FindingRequest, evaluate_finding
+    from lightgesture.benchmarks.suite_cache import cache_folder
+    from lightgesture.features.selector import SELECTORS
 
     selectors = args.selector or SELECTORS
     request = FindingRequest(
@@ -51,7 +76,8 @@ def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "R
         by=[name for name in selectors if name in SELECTORS],
         recorded=args.compare or (),
     )
-    try:
-        return evaluate_finding(request, data, progress, say)
-    except SelectorError as error:
-        raise UsageError(str(error)) from error
+    yield evaluate_finding(request, data, progress, say)
+    if args.clips:
+        from lightgesture.benchmarks.finding_clips import evaluate_clips
+
+        yield evaluate_clips(selectors, cache_folder(), progress, args.jobs, args.quick)

@@ -53,11 +53,12 @@ def test_many_outlines_at_once_are_described_as_each_by_the_library():
 
 @given(
     fingers=st.integers(1, 5),
-    scale=st.floats(0.7, 1.6),
+    scale=st.floats(1.0, 1.6),
     at=st.tuples(st.integers(-20, 60), st.integers(-20, 80)),
 )
 @settings(max_examples=40, deadline=None)
 def test_moving_and_enlarging_hardly_change_a_descriptor(fingers, scale, at):
+    # A smaller drawing has thinner gaps between its fingers, down to none: another outline, not the same one smaller.
     first, second = describe_outlines([_hand(fingers), _hand(fingers, scale, at=at)])
     assert np.linalg.norm(first - second) < 0.3
 

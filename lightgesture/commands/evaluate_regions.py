@@ -22,7 +22,7 @@ class Progress(Protocol):
     def __call__(self, items: "Iterable[Item]", heading: str, /) -> "Iterable[Item]": ...
 
 
-OPTIONS = ("selector", "fold", "compare", "clips")
+OPTIONS = ("selector", "fold", "compare", "clips", "ablation")
 """Options that only this target has."""
 
 
@@ -51,6 +51,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--clips",
         action="store_true",
         help="with regions: also on the suite's clips and on short ones of one difficulty each, rendered at first",
+    )
+    parser.add_argument(
+        "--ablation",
+        action="store_true",
+        help="with regions: also what each stage buys, by variants of both selectors that do without it; with --clips "
+        "on the short clips too",
     )
 
 
@@ -81,3 +87,7 @@ def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Ite
         from lightgesture.benchmarks.finding_clips import evaluate_clips
 
         yield evaluate_clips(selectors, cache_folder(), progress, args.jobs, args.quick)
+    if args.ablation:
+        from lightgesture.benchmarks.ablation import evaluate_ablation
+
+        yield evaluate_ablation(data, progress, cache_folder() if args.clips else None, args.jobs)

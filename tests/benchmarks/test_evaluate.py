@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import accuracy, finding_report
+from lightgesture.benchmarks import ablation, accuracy, finding_report
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
 from lightgesture.commands import evaluate
 from lightgesture.errors import InputError, UsageError
@@ -89,6 +89,24 @@ def test_regions_are_read_by_a_named_model(command, capsys):
     }
     methods = {row["method"] for row in rows if row["table"] == "regions"}
     assert methods == {"fake", "paper, bank", "paper, classifier"}
+
+
+def test_the_ablation_is_a_report_of_its_own(command, monkeypatch, fake_method, capsys):
+    monkeypatch.setattr(ablation, "ablations", lambda: [copy_named(fake_method, "without")])
+    assert command("regions", "--ablation", "--selector", "learned", "--json") == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+    (row,) = [row for row in rows if row["table"] == "ablation"]
+    assert (row["method"], row["hover"], row["hover, sequence"], row["tank"]) == ("without", 0.5, 0.5, 1.0)
+    assert "clips" not in row
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--ablation"], ["--clips"], ["--selector", "learned"], ["--fold", "a.npz"], ["--compare", "b"]],
+)
+def test_options_about_finding_need_its_target(command, options):
+    with pytest.raises(UsageError, match=f"{options[0]} is about finding hands"):
+        command("hands", *options)
 
 
 def test_hands_are_scored_in_frames_too(command, capsys):

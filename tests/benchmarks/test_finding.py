@@ -12,9 +12,17 @@ from lightgesture.benchmarks.finding import NoReader, Stages, run_left_out, sele
 from lightgesture.benchmarks.finding_tables import finding_tables, found_table
 from lightgesture.benchmarks.regions import Run, make_answer, run_methods, run_single
 from lightgesture.benchmarks.scorer import Reading
+from lightgesture.benchmarks.shared_parts import shared_parts
 from lightgesture.datasets import Label, Sample, read_frames, read_negatives
 from lightgesture.features.selector import RegionStage
-from lightgesture.features.selector_file import BUNDLED, SelectorError
+from lightgesture.features.selector_file import (
+    BUNDLED,
+    Selector,
+    SelectorError,
+    load_classical,
+    load_learned,
+    save_selector,
+)
 from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Candidates
 from lightgesture.reading import ReadingStage, Sighting
@@ -102,6 +110,7 @@ def _folds(tmp_path, monkeypatch, fake_method):
             return super().read(image)
 
     monkeypatch.setattr(finding, "selector_method", lambda _, file: Opened(file[-5]))
+    monkeypatch.setattr(finding, "shared_parts", lambda _, file: ())
     files = []
     for number, sources in enumerate((["lab"], ["lab", "reef"])):
         card = {"left_out": {"sources": sources, "fold": None}}
@@ -143,6 +152,30 @@ def test_folds_of_a_group_are_pooled(data, folds):
     )
     assert used == ["0", "1", "1"]
     assert run.score.frames == 3
+
+
+def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
+    file = tmp_path / "fold.npz"
+    parts = load_learned()
+    own = replace(parts, **{name: altered(getattr(parts, name)) for name in ("places", "pairs")})
+    save_selector(file, Selector(load_classical(), own))
+    card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
+    file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
+    assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")
+    assert shared_parts("learned", file) == ("locator", "refiner")
+    assert shared_parts("learned", file, file) == ("locator", "refiner", "trees", "trees of pairs")
+    for selector, parts in (("classical", "trees, trees of pairs, bank"), ("learned", "locator, refiner")):
+        told = []
+        assert run_left_out(selector, [str(file)], read_frames(data), show_nothing, told.append) == []
+        assert len(told) == 1
+        assert (
+            f"not scored by the {selector} choice, whose parts ({parts}) are those of the bundled" in told[0]
+        )
+
+
+def altered(trees):
+    """Trees with one other leaf."""
+    return replace(trees, value=trees.value + np.float32(0.01))
 
 
 def sample_of(folder, labels, source="a", complete=True):

@@ -17,10 +17,11 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from lightgesture.benchmarks.finding_latency import finding_times, fresh_starts
 from lightgesture.benchmarks.hand_bank import build_bank
 from lightgesture.benchmarks.paper_chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
-from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
 from lightgesture.console import ReaderGoneError, drop_output, print_line, say
 from lightgesture.datasets import find_data, group_samples, read_frames
@@ -122,13 +123,12 @@ def run(args: argparse.Namespace) -> None:
         rows = measure(clips, args.model, _paper_maker(data), settings)
     except ModelError as error:
         raise UsageError(str(error)) from error
-    table = latency_table(rows, settings)
-    print_line(table.to_text())
+    tables = [latency_table(rows, settings), finding_times(clips, settings), fresh_starts(settings)]
+    print_line(to_text(tables))
     if args.out:
-        write_json(
-            Path(args.out),
-            {"machine": describe_machine(), "settings": asdict(settings), "rows": table.to_dicts()},
-        )
+        found = [row for table in tables for row in table.to_dicts()]
+        content = {"machine": describe_machine(), "settings": asdict(settings), "rows": found}
+        write_json(Path(args.out), content)
 
 
 def _paper_maker(data: Path | None) -> Callable[[], PaperChain] | None:

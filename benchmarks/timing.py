@@ -31,6 +31,7 @@ class LatencySettings:
     threads: numbers of threads to measure, of OpenCV and of NumPy's linear algebra alike.
     most_frames: frames of a clip that are used.
     sequence: the group of the data folder that is timed beside the bundled clip.
+    starts: new processes whose start is timed, 1 to 20.
     """
 
     size: tuple[int, int] = (640, 480)
@@ -39,6 +40,7 @@ class LatencySettings:
     threads: tuple[int, ...] = (1, 2)
     most_frames: int = 150
     sequence: str = "hover"
+    starts: int = 5
 
 
 class RecordingClock(StageClock):

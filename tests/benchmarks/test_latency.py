@@ -8,6 +8,7 @@ import pytest
 
 from lightgesture.benchmarks import latency, timing
 from lightgesture.benchmarks.latency import PAPER, measure, read_clips
+from lightgesture.benchmarks.tables import Table
 from lightgesture.benchmarks.timing import (
     FRAME,
     SINGLE,
@@ -57,6 +58,11 @@ def fake_pipelines(monkeypatch):
 
     monkeypatch.setattr(timing, "TimedPipeline", make)
     return made
+
+
+@pytest.fixture
+def no_starts(monkeypatch):
+    monkeypatch.setattr(latency, "fresh_starts", lambda _: Table("starts", "Starts", ("seconds",), ()))
 
 
 @pytest.fixture
@@ -110,7 +116,7 @@ def test_clips_are_scaled_to_one_size(data):
     assert [frame.shape for frame in clips["hover"]] == [(480, 640, 3)] * 2
 
 
-@pytest.mark.usefixtures("no_sample", "fake_pipelines")
+@pytest.mark.usefixtures("no_sample", "no_starts", "fake_pipelines")
 def test_table_and_file(data, tmp_path, capsys):
     out = tmp_path / "times.json"
     assert latency.main(["--data", str(data), "--rounds", "2", "--out", str(out)]) == 0
@@ -119,10 +125,11 @@ def test_table_and_file(data, tmp_path, capsys):
     assert content["machine"]["opencv"] == cv2.__version__
     assert content["settings"]["rounds"] == 2
     assert {row["clip"] for row in content["rows"]} == {"hover"}
+    assert {row["table"] for row in content["rows"]} == {"latency", "finding"}
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("times")] == ["times.json"]
 
 
-@pytest.mark.usefixtures("no_sample", "fake_pipelines")
+@pytest.mark.usefixtures("no_sample", "no_starts", "fake_pipelines")
 @pytest.mark.parametrize(
     ("options", "status", "message"),
     [

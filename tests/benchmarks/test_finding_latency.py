@@ -1,0 +1,109 @@
+"""What finding costs: searching and following apart, each run-time, and a fresh start."""
+
+import subprocess
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from lightgesture.benchmarks import finding_latency
+from lightgesture.benchmarks.finding_latency import (
+    FOLLOWED,
+    LITERT,
+    PARTS,
+    SEARCHED,
+    Engine,
+    engines,
+    finding_times,
+    fresh_start,
+    fresh_starts,
+    open_stage,
+    time_finding,
+    without_litert,
+)
+from lightgesture.benchmarks.timing import LatencySettings
+from lightgesture.decoding import SAMPLE
+from lightgesture.features.network_numpy import NumpyRunner
+from lightgesture.features.network_runner import Network
+from lightgesture.features.selector_file import load_learned
+from lightgesture.sources import open_source
+
+QUICK = LatencySettings(rounds=2, warm_up=3, starts=1)
+
+
+@pytest.fixture(name="frames", scope="module")
+def _frames():
+    """Frames of the bundled clip in which both hands are up."""
+    with open_source(SAMPLE) as source:
+        return [frame.image for frame, _ in zip(source, range(40), strict=False)][20:]
+
+
+def test_searching_and_following_are_told_apart(frames):
+    rows = {row["stage"]: row for row in time_finding(frames, Engine("learned"), QUICK)}
+    stages = [f"{part}, {word}" for word in ("searched", "followed") for part in PARTS]
+    assert set(rows) == {SEARCHED, FOLLOWED, *stages}
+    assert rows[SEARCHED]["share"] + rows[FOLLOWED]["share"] == pytest.approx(1.0)
+    assert rows[FOLLOWED]["share"] > 0.5
+    assert rows["regions, followed"]["median_ms"] < rows["regions, searched"]["median_ms"]
+    assert all(0.0 < row["median_ms"] <= row["p95_ms"] for row in rows.values())
+
+
+def test_the_classical_choice_searches_every_frame(frames):
+    rows = time_finding(frames[:4], Engine("classical"), QUICK)
+    assert [row["stage"] for row in rows] == [SEARCHED, *(f"{part}, searched" for part in PARTS)]
+    assert {(row["selector"], row["nets"], row["share"]) for row in rows} == {("classical", "", 1.0)}
+
+
+def test_without_the_run_time_the_nets_run_by_numpy():
+    before = {name for name in sys.modules if name.startswith(LITERT)}
+    network = load_learned().locator
+    with without_litert():
+        assert isinstance(Network(network)._runner, NumpyRunner)
+    assert {name for name in sys.modules if name.startswith(LITERT)} == before
+    pytest.importorskip(LITERT)
+    assert not isinstance(Network(network)._runner, NumpyRunner)
+
+
+def test_both_run_times_find_the_same(frames):
+    pytest.importorskip(LITERT)
+    colour = finding_latency.TimedFinding(open_stage(Engine("learned")))._colour.process(frames[0])
+    found = [open_stage(Engine("learned", uses)).process(colour) for uses in (True, False)]
+    first, second = ([region.box for region in one.regions] for one in found)
+    assert len(first) >= 2
+    assert np.array(first[:2]) == pytest.approx(np.array(second[:2]), abs=3)
+
+
+def test_what_is_not_installed_is_not_timed(monkeypatch):
+    assert [(engine.selector, engine.name) for engine in engines()][-2:] == [
+        ("learned", "NumPy"),
+        ("classical", ""),
+    ]
+    monkeypatch.setattr(finding_latency, "find_spec", lambda _: None)
+    assert len(engines()) == 2
+
+
+def test_a_row_for_each_clip_and_engine(monkeypatch, frames):
+    monkeypatch.setattr(finding_latency, "engines", lambda: [Engine("learned", False), Engine("classical")])
+    table = finding_times({"a": frames[:2], "b": frames[:2]}, LatencySettings(rounds=1, warm_up=1))
+    names = [(row["clip"], row["selector"]) for row in table.to_dicts()]
+    changes = [first for first, second in pairwise([*names, None]) if first != second]
+    assert changes == [("a", "learned"), ("a", "classical"), ("b", "learned"), ("b", "classical")]
+
+
+def test_a_fresh_start_takes_time_and_memory():
+    seconds, peak = fresh_start(Engine("learned", uses_litert=False), QUICK)
+    assert 0.05 < seconds < 60.0
+    assert peak is None or 20.0 < peak < 1000.0
+
+
+def test_starts_are_summed_up(monkeypatch):
+    answers = iter([(3.0, 10.0), (1.0, None), (2.0, 30.0)] * 3)
+    monkeypatch.setattr(finding_latency, "fresh_start", lambda *_: next(answers))
+    rows = fresh_starts(LatencySettings(starts=3)).to_dicts()
+    assert {(row["starts"], row["seconds"], row["peak_mb"]) for row in rows} == {(3, 2.0, 20.0)}
+
+
+def test_a_start_that_fails_is_no_time():
+    with pytest.raises(subprocess.CalledProcessError):
+        fresh_start(Engine("nothing"), QUICK)

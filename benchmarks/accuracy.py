@@ -36,6 +36,7 @@ from lightgesture.datasets import (
     read_negatives,
     read_webcam,
 )
+from lightgesture.features.selector import SELECTORS, SelectorName
 from lightgesture.sources import read_picture
 
 HANDS = "hands"
@@ -107,13 +108,16 @@ def available_targets(data: Path) -> list[str]:
     return [target for target in TARGETS if any((data / name).is_dir() for name in folders[target])]
 
 
-def default_methods(classifier: Classifier, model: str, data: Path | None) -> list[Method]:
-    """The pipeline; and, where the pictures for its bank are there, the paper's chain named in both ways."""
-    pipeline = product(model)
+def default_methods(
+    classifier: Classifier, model: str, data: Path | None, selectors: Sequence[SelectorName] = SELECTORS[:1]
+) -> list[Method]:
+    """The pipeline with each selector; and, where the pictures for its bank are there, the paper's chain named in both
+    ways."""
+    pipelines: list[Method] = [product(model, selector) for selector in selectors]
     if data is None or not (data / "hands" / "train.csv").is_file():
-        return [pipeline]
+        return pipelines
     bank = build_bank(data)
-    return [pipeline, PaperMethod(bank), PaperMethod(bank, classifier)]
+    return [*pipelines, PaperMethod(bank), PaperMethod(bank, classifier)]
 
 
 def save_failures(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from lightgesture.benchmarks.hand_bank import HandBank
 from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
+from lightgesture.features.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
 from lightgesture.pipeline import Pipeline
@@ -94,9 +95,10 @@ class PipelineMethod:
         return _PipelineStream(self._open(hold))
 
 
-def product(model: str) -> PipelineMethod:
-    """The product as it is shipped, with the named model."""
-    return PipelineMethod("lightgesture", lambda hold: Pipeline(model=model, hold=hold))
+def product(model: str, selector: SelectorName = SELECTORS[0]) -> PipelineMethod:
+    """The product with the named model; under the name of its selector too, where it is not the default one."""
+    name = "lightgesture" if selector == SELECTORS[0] else f"lightgesture, {selector}"
+    return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, hold=hold))
 
 
 class _PipelineStream:

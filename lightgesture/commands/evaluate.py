@@ -65,7 +65,8 @@ def run(args: argparse.Namespace) -> int:
     if args.target != SUITE and (args.only or (args.quick and not args.clips)):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
     for option in evaluate_regions.OPTIONS:
-        if args.target != REGIONS and getattr(args, option):
+        is_fitting = args.target == REGIONS or (args.target == SUITE and option == "selector")
+        if getattr(args, option) and not is_fitting:
             raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
     if args.jobs < 1:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
@@ -129,7 +130,7 @@ def run_suite(args: argparse.Namespace) -> int:
         raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
     try:
         model = args.model or DEFAULT_MODEL
-        methods = default_methods(load_classifier(model), model, data)
+        methods = default_methods(load_classifier(model), model, data, evaluate_regions.named_selectors(args))
     except ModelError as error:
         raise UsageError(str(error)) from error
     chosen = suite.choose_takes(takes, args.only or (), args.quick)

@@ -9,9 +9,10 @@ from lightgesture.console import say
 from lightgesture.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from lightgesture.benchmarks.accuracy import Report
+    from lightgesture.features.selector import SelectorName
 
 Item = TypeVar("Item")
 
@@ -32,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--selector",
         action="append",
         metavar="NAME|PATH",
-        help="with regions: what finds the hands, by name, or a selector file (repeatable; default: every name)",
+        help="what finds the hands (repeatable): with regions names or selector files, default: every name; with suite "
+        "names, default: learned",
     )
     parser.add_argument(
         "--fold",
@@ -58,6 +60,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="with regions: also what each stage buys, by variants of both selectors that do without it; with --clips "
         "on the short clips too",
     )
+
+
+def named_selectors(args: argparse.Namespace) -> "Sequence[SelectorName]":
+    """The selectors of the whole chain, which are known by name only. UsageError: there is no such selector."""
+    from lightgesture.features.selector import SELECTORS
+
+    named = args.selector or SELECTORS[:1]
+    if unknown := [name for name in named if name not in SELECTORS]:
+        raise UsageError(f"--selector {unknown[0]}: with suite it must be {' or '.join(SELECTORS)}")
+    return [selector for name in named for selector in SELECTORS if selector == name]
 
 
 def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":

@@ -29,7 +29,7 @@ def command(monkeypatch, data, fake_classifier, fake_method):
     def load(_name):
         return fake_classifier
 
-    def make_pipeline(_model):
+    def make_pipeline(_model, _selector):
         return fake_method
 
     monkeypatch.setattr(models, "load_classifier", load)

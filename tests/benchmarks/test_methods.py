@@ -103,6 +103,9 @@ def test_pipeline_method_reads_frames_and_collects_events(monkeypatch, scene):
     assert [stream.process(scene, index / 30) for index in range(5)] == [[hand]] * 5
     assert stream.finish() == Decoded(("STOP", "HOVER", "GO"), ("STOP HOVER GO",), 0)
     assert FakePipeline.created == [
-        {"model": "some.npz", "hold": None},
-        {"model": "some.npz", "hold": 1},
+        {"model": "some.npz", "selector": "learned", "hold": None},
+        {"model": "some.npz", "selector": "learned", "hold": 1},
     ]
+    assert method.name == "lightgesture"
+    assert product("some.npz", "classical").name == "lightgesture, classical"
+    assert FakePipeline.created[-1]["selector"] == "classical"

@@ -129,13 +129,22 @@ def _command(monkeypatch, tmp_path, clip, signed_take):
     """Runs `evaluate suite` with one drawn clip and a flawless reader."""
     monkeypatch.setattr(suite, "takes_of", lambda name, _data: [signed_take] if name == WATER else [])
     monkeypatch.setattr(models, "load_classifier", lambda _name: None)
-    monkeypatch.setattr(
-        accuracy, "default_methods", lambda *_: [Oracle(clip.labels), Oracle(clip.labels, "blind", True)]
-    )
+    asked = []
+
+    def methods_of(_classifier, _model, _data, selectors):
+        asked.append(list(selectors))
+        return [Oracle(clip.labels), Oracle(clip.labels, "blind", True)]
+
+    monkeypatch.setattr(accuracy, "default_methods", methods_of)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     parser = argparse.ArgumentParser()
     evaluate.add_arguments(parser)
-    return lambda *arguments: evaluate.run(parser.parse_args([*arguments, "--data", str(tmp_path)]))
+
+    def run(*arguments):
+        return evaluate.run(parser.parse_args([*arguments, "--data", str(tmp_path)]))
+
+    run.asked = asked
+    return run
 
 
 def test_the_command_prints_tables_and_draws_what_was_missed(command, tmp_path, capsys):
@@ -161,3 +170,11 @@ def test_the_command_gives_json(command, capsys):
 def test_wrong_choices_are_refused(command, arguments):
     with pytest.raises(UsageError, match="--only"):
         command(*arguments)
+
+
+def test_selectors_of_the_whole_chain_are_named(command):
+    command("suite", "--json")
+    command("suite", "--json", "--selector", "classical", "--selector", "learned")
+    assert command.asked == [["learned"], ["classical", "learned"]]
+    with pytest.raises(UsageError, match=r"--selector own\.npz: with suite it must be learned or classical"):
+        command("suite", "--selector", "own.npz")

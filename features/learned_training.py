@@ -1,6 +1,6 @@
 """Fit the trees that decide how far locator and refiner are believed. Needs scikit-learn."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,7 +54,7 @@ def look(pictures: Iterable[BoxedPicture], nets: Places) -> Iterable[Seen]:
         yield Seen(colour, boxes, *nets.find(colour))
 
 
-def fit_places(seen: Sequence[Seen], seed: int) -> Trees:
+def fit_places(seen: Iterable[Seen], seed: int) -> Trees:
     """Trees that predict the IoU of a refined box with the best hand box."""
     rows = [np.zeros((0, COLUMNS), np.float32)]
     targets = [np.zeros(0, np.float32)]
@@ -64,7 +64,7 @@ def fit_places(seen: Sequence[Seen], seed: int) -> Trees:
     return fit_trees(np.concatenate(rows), np.concatenate(targets), PLACE_TREES, seed)
 
 
-def fit_place_pairs(seen: Sequence[Seen], places: Trees, seed: int) -> Trees:
+def fit_place_pairs(seen: Iterable[Seen], places: Trees, seed: int) -> Trees:
     """Trees that predict the lower IoU of a pair. `seen` must be other pictures than those of `places`, and every hand
     in them must have its box."""
     rows = [np.zeros((0, PAIR_COLUMNS), np.float32)]

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps",
         type=int,
         metavar="N",
-        help="of the locator's training; the refiner's takes two thirds (default: 9000)",
+        help="of the locator's training; the refiner's takes four fifths (default: 10000)",
     )
     parser.add_argument(
         "--without",
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--fold: {error}") from error
     settings = RegionTraining()
     if args.steps is not None:
-        settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 2 // 3))
+        settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
     progress = (lambda _: None) if args.quiet else say
     train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
     return ExitStatus.OK

@@ -50,15 +50,15 @@ def cut_turned(image: Image, window: Window, size: int, turn: float, flip: bool)
     """A window of the picture turned about the window's middle and mirrored.
 
     The board never turns a window; training does, because people lean their hands more ways than the pictures
-    show, and because a mirrored left hand is a right one. The picture is turned first, so that the window itself
-    is cut as on the board.
+    show, and because a mirrored left hand is a right one. Only the window's own pixels are turned.
     """
     left, top, side = window
     if turn:
         middle = left + side / 2 - 0.5, top + side / 2 - 0.5
         matrix = cv2.getRotationMatrix2D(middle, float(-np.rad2deg(turn)), 1.0)
-        shape = image.shape[1], image.shape[0]
-        image = np.asarray(cv2.warpAffine(image, matrix, shape, borderMode=cv2.BORDER_REPLICATE), np.uint8)
+        matrix[:, 2] -= left, top
+        turned = cv2.warpAffine(image, matrix, (side, side), borderMode=cv2.BORDER_REPLICATE)
+        image, window = np.asarray(turned, np.uint8), (0, 0, side)
     cut = cut_window(image, window, size)
     return np.ascontiguousarray(cut[:, ::-1]) if flip else cut
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from lightgesture.datasets import (
     Sample,
+    fold_of,
     read_frames,
     read_landmarks,
     read_negatives,
@@ -47,6 +48,26 @@ class Material:
     frames: list[BoxedPicture]
     empty: list[BoxedPicture]
     hands: list[Cutout]
+
+    def parted(self, one_in: int) -> tuple["Material", "Material"]:
+        """Most of it, and one in so many: of people by source, so that nobody is in both, of empty frames by number."""
+
+        def is_second(source: str) -> bool:
+            return fold_of(source, one_in) == 0
+
+        second = [any(map(is_second, one.sources)) for one in self.frames]
+        return (
+            Material(
+                [one for one, is_own in zip(self.frames, second, strict=True) if not is_own],
+                [one for index, one in enumerate(self.empty) if index % one_in],
+                [one for one in self.hands if not is_second(one.source)],
+            ),
+            Material(
+                [one for one, is_own in zip(self.frames, second, strict=True) if is_own],
+                self.empty[::one_in],
+                [one for one in self.hands if is_second(one.source)],
+            ),
+        )
 
     def rooms(self) -> list[Background]:
         """The frames with their hands painted over."""

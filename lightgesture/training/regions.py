@@ -1,6 +1,5 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
-import itertools
 import json
 import time
 from collections.abc import Callable, Iterator
@@ -11,6 +10,9 @@ import cv2
 import numpy as np
 
 from lightgesture.errors import InputError, UsageError
+from lightgesture.features.learned import Places
+from lightgesture.features.learned_training import fit_place_pairs, fit_places, look
+from lightgesture.features.network import IntegerNetwork
 from lightgesture.features.selector_file import ClassicalParts, LearnedParts, Selector, save_selector
 from lightgesture.features.training import BoxedPicture, fit_pairs, fit_regions
 from lightgesture.results.atomic import replacing
@@ -26,17 +28,18 @@ Progress = Callable[[str], None]
 class RegionTraining:
     """How much goes into the selector.
 
-    composed: pictures for the nets and the classical trees. unseen: others, on which the trees that weigh the nets are
-    fitted. pair_share: of the unseen, those for pairs. locator_steps, refiner_steps: of the optimiser. mined: composed
-    pictures searched for false peaks.
+    one_in: of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to
+    people and water they have not seen. composed: pictures for the nets and the classical trees of regions. unseen:
+    those composed of what is kept from the nets. pair_share: of all pictures for trees, those for pairs.
+    locator_steps, refiner_steps: of the optimiser.
     """
 
+    one_in: int = 8
     composed: int = 12000
     unseen: int = 2000
     pair_share: float = 0.4
-    locator_steps: int = 9000
-    refiner_steps: int = 6000
-    mined: int = 4000
+    locator_steps: int = 10000
+    refiner_steps: int = 8000
     pictures: PictureSettings = field(default_factory=PictureSettings)
 
 
@@ -51,25 +54,28 @@ def train_regions(
 ) -> None:
     """Train the selector and write it with its card (`out` with the suffix .json).
 
-    What is done already lies in a folder beside `out` and is used when the same command runs again. The trees that
-    weigh the nets are fitted on composed pictures the nets have not seen; whole frames are not among them, because the
-    nets have learnt them. Raises InputError, UsageError.
+    What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
+    when the file is written. Raises InputError, UsageError.
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
     folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
     progress("reading whole frames and cutting out hands")
     material = read_material(data, without, settings.pictures, seed)
-    if not (material.frames and material.empty and material.hands):
+    for_nets, for_trees = material.parted(settings.one_in)
+    if not all((part.frames and part.empty and part.hands) for part in (for_nets, for_trees)):
         raise InputError(f"{data}: too little is left to train on; leave out fewer sources")
     progress("composing pictures")
-    ingredients = Ingredients(material.hands, material.waters(), material.rooms())
-    composed = compose_pool(ingredients, settings.composed, seed + 1, jobs, folder / "composed.npy")
-    unseen = compose_pool(ingredients, settings.unseen, seed + 2, jobs, folder / "unseen.npy")
-    learned = _learned(material, composed, unseen, folder, seed, settings, progress)
+    composed = _compose(for_nets, settings.composed, seed + 1, jobs, folder / "composed.npy")
+    unseen = _compose(for_trees, settings.unseen, seed + 2, jobs, folder / "unseen.npy")
+    learned = _learned(for_nets, composed, folder, seed, settings, progress)
+    progress("fitting the trees that weigh both nets")
+    first, second = _tree_pictures(for_trees, unseen, settings.pair_share, seed)
+    places = fit_places(look(first, Places(*learned)), seed)
+    pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
     progress("fitting the classical trees")
-    classical = _classical(data, material, composed, unseen, without, seed)
-    save_selector(out, Selector(classical, learned))
+    classical = _classical(data, for_nets, composed, second, without, seed)
+    save_selector(out, Selector(classical, LearnedParts(*learned, places, pairs)))
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 
@@ -95,17 +101,20 @@ def checkpoint_folder(out: Path, request: dict[str, object]) -> Path:
     return folder
 
 
+def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
+    ingredients = Ingredients(material.hands, material.waters(), material.rooms())
+    return compose_pool(ingredients, count, seed, jobs, path)
+
+
 def _learned(
     material: Material,
     composed: list[BoxedPicture],
-    unseen: list[BoxedPicture],
     folder: Path,
     seed: int,
     settings: RegionTraining,
     progress: Progress,
-) -> LearnedParts:
-    from lightgesture.features.learned import Places
-    from lightgesture.features.learned_training import fit_place_pairs, fit_places, look
+) -> tuple[IntegerNetwork, IntegerNetwork]:
+    """Locator and refiner."""
     from lightgesture.training.hard_regions import hard_regions
     from lightgesture.training.locator import train_locator
     from lightgesture.training.locator_samples import LocatorSamples
@@ -115,23 +124,35 @@ def _learned(
     samples = LocatorSamples(material.frames, material.empty, composed)
     locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
     progress("searching for what the locator mistakes")
-    frames, empty, mined = (
-        hard_regions(part, locator) for part in (material.frames, material.empty, composed[: settings.mined])
+    frames, empty, hard = (
+        hard_regions(part, locator) for part in (material.frames, material.empty, composed)
     )
-    windows = RefinerSamples(frames, empty, mined)
-    refiner = train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
-    progress("fitting the trees that weigh both nets")
-    seen = list(look(unseen, Places(locator, refiner)))
-    cut = round(len(seen) * (1.0 - settings.pair_share))
-    places = fit_places(seen[:cut], seed)
-    return LearnedParts(locator, refiner, places, fit_place_pairs(seen[cut:], places, seed))
+    windows = RefinerSamples(frames, empty, hard)
+    return locator, train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
+
+
+def _tree_pictures(
+    material: Material, unseen: list[BoxedPicture], pair_share: float, seed: int
+) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
+    """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
+    rng = np.random.default_rng(seed)
+    single = [*material.empty, *unseen]
+    whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
+    parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
+    for place, index in enumerate(order):
+        part = parts[place < pair_share * len(order)]
+        if index < whole:
+            part.extend(variants(material.frames[index], rng))
+        else:
+            part.append(single[index - whole])
+    return parts
 
 
 def _classical(
     data: Path,
     material: Material,
     composed: list[BoxedPicture],
-    unseen: list[BoxedPicture],
+    for_pairs: list[BoxedPicture],
     without: LeftOut,
     seed: int,
 ) -> ClassicalParts:
@@ -145,9 +166,7 @@ def _classical(
         yield from composed[: len(composed) // 2]
 
     regions = fit_regions(region_pictures(), bank, seed)
-    two_handed = [picture for picture in material.frames if len(picture.boxes) > 1]
-    pairs = fit_pairs(itertools.chain(two_handed, material.empty, unseen), regions, bank, seed)
-    return ClassicalParts(regions, pairs, bank)
+    return ClassicalParts(regions, fit_pairs(for_pairs, regions, bank, seed), bank)
 
 
 def _write_card(
@@ -164,6 +183,7 @@ def _write_card(
             "underwater frames without a hand": len(material.empty),
             "composed pictures": settings.composed + settings.unseen,
             "sets of negatives used": list(settings.pictures.negative_sets),
+            "kept from the nets, for the trees": f"one in {settings.one_in} sources",
         },
         CARD_KEY: without.to_card(),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "

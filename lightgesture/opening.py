@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from lightgesture.errors import UsageError
+from lightgesture.features.profile import ProfileError
 from lightgesture.features.selector_file import SelectorError
 from lightgesture.fsm import GrammarError
 from lightgesture.models import ModelError
@@ -14,12 +15,13 @@ from lightgesture.settings import DecodeSettings
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:
     """The pipeline for one input, `source` being its name in the records.
 
-    UsageError: the model, the selector's data or the grammar is wrong.
+    UsageError: the model, the selector's data, the colour profile or the grammar is wrong.
     """
     try:
         return Pipeline(
             model=settings.model,
             selector=settings.selector,
+            profile=settings.profile,
             hold=settings.hold,
             grammar=settings.grammar,
             mirrored=settings.mirrored,
@@ -27,7 +29,7 @@ def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPict
             frames=settings.frames,
             debug=debug,
         )
-    except (ModelError, SelectorError, GrammarError) as error:
+    except (ModelError, SelectorError, ProfileError, GrammarError) as error:
         raise UsageError(str(error)) from error
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
+from lightgesture.features.profile import load_profile
 from lightgesture.features.selector import RegionStage, SelectorName, choose
 from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Candidates, Image
@@ -64,12 +65,13 @@ class Pipeline:
     """Decodes one stream of frames; make another for another stream.
 
     model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
-    see `features.selector`. hold: consecutive frames that a sign is held, None for the
+    see `features.selector`. profile: path of a colour profile of the diver's hands, which replaces the map of
+    skin colours; None for that map. hold: consecutive frames that a sign is held, None for the
     grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
     selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
     picture of every stage of every frame.
     Raises lightgesture.models.ModelError, lightgesture.features.selector_file.SelectorError,
-    lightgesture.fsm.GrammarError or ValueError: one line each.
+    lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class Pipeline:
         *,
         model: str | os.PathLike[str] = "svm",
         selector: SelectorName = "learned",
+        profile: str | os.PathLike[str] | None = None,
         hold: int | None = None,
         grammar: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
@@ -85,7 +88,8 @@ class Pipeline:
         debug: PictureSink | None = None,
     ) -> None:
         self._source, self._frames, self._mirrored, self._debug = source, frames, mirrored, debug
-        self._colour, self._regions = ColourStage(), RegionStage(selector)
+        self._colour = ColourStage(profile=None if profile is None else load_profile(profile))
+        self._regions = RegionStage(selector)
         self._tracks = TrackStage(selection=self._regions.settings)
         self._reading = ReadingStage(load_classifier(model))
         self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)

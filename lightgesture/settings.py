@@ -47,6 +47,9 @@ class DecodeSettings(BaseModel):
     selector: Literal["learned", "classical"] = _option(
         "learned", "how hands are found: learned (small nets) or classical (no net)", "learned|classical"
     )
+    profile: str | None = _option(
+        None, "colour profile of the diver's hands or gloves (default: any skin)", "FILE", min_length=1
+    )
     grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=DECODE)
     hold: int | None = _option(
         None,
@@ -77,7 +80,7 @@ class DecodeSettings(BaseModel):
     quiet: bool = _option(False, "no progress and no remarks on standard error")
 
 
-_PATHS = ("grammar", "out", "debug_dir", "model")
+_PATHS = ("grammar", "profile", "out", "debug_dir", "model")
 _BUILT_IN_MODELS = ("svm", "cnn")
 
 

@@ -32,16 +32,10 @@ class FakePipeline:
     made: ClassVar = []
     interrupt_at = None
 
-    def __init__(self, *, model, selector, hold, grammar, mirrored, source, frames, debug):
+    def __init__(self, *, model, source, frames, debug, **options):
         if model == "cnn":
             raise ModelError("the cnn model is not built yet; use --model svm")
-        self.options = {
-            "model": model,
-            "selector": selector,
-            "hold": hold,
-            "grammar": grammar,
-            "mirrored": mirrored,
-        }
+        self.options = {"model": model, **options}
         self.source, self.frames, self.debug = source, frames, debug
         self.seen = []
         FakePipeline.made.append(self)

@@ -53,6 +53,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert fake.made[-1].options == {
         "model": "svm",
         "selector": "learned",
+        "profile": None,
         "hold": 3,
         "grammar": "my.toml",
         "mirrored": True,
@@ -62,6 +63,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert fake.made[-1].options == {
         "model": "svm",
         "selector": "learned",
+        "profile": None,
         "hold": None,
         "grammar": None,
         "mirrored": False,

@@ -38,7 +38,8 @@ def test_command_line_goes_before_the_file(config):
 
 def test_every_option_may_stand_in_the_file(config):
     path = config(
-        'model = "/m.npz"\nselector = "classical"\ngrammar = "/g.toml"\nhold = 9\nmirrored = true\n'
+        'model = "/m.npz"\nselector = "classical"\nprofile = "/p.json"\n'
+        'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
     )
@@ -46,6 +47,7 @@ def test_every_option_may_stand_in_the_file(config):
     assert settings.model_dump() == {
         "model": "/m.npz",
         "selector": "classical",
+        "profile": "/p.json",
         "grammar": "/g.toml",
         "hold": 9,
         "mirrored": True,
@@ -73,7 +75,7 @@ def test_a_byte_order_mark_does_no_harm(config):
     ("text", "message"),
     [
         ("hodl = 3", "hodl: unknown key; did you mean 'hold'?"),
-        ("xyzzy = 3", "xyzzy: unknown key; known are model, selector, grammar, hold"),
+        ("xyzzy = 3", "xyzzy: unknown key; known are model, selector, profile, grammar, hold"),
         ("[decode]\nhold = 3", "decode: unknown key"),
         ('hold = "3"', "hold: should be a valid integer, not '3'"),
         ("hold = 0", "hold: should be greater than or equal to 1, not 0"),

@@ -28,12 +28,15 @@ MAX_FPS = 1000.0
 
 DECODE = "decode"
 RECOGNIZE = "recognize"
+LIVE = "live"
+STREAMS = (DECODE, LIVE)
+"""The commands whose pictures follow each other in time."""
 
 
 def _option(
-    default: Any, text: str, metavar: str | None = None, *, only: str | None = None, **checks: Any
+    default: Any, text: str, metavar: str | None = None, *, only: tuple[str, ...] = (), **checks: Any
 ) -> Any:
-    """A field that is an option too; `only`: the one command that has it on its command line."""
+    """A field that is an option too; `only`: the commands that have it on their command line, none for all."""
     extra: Any = {"metavar": metavar, "only": only}
     return Field(default=default, description=text, json_schema_extra=extra, **checks)
 
@@ -50,12 +53,12 @@ class DecodeSettings(BaseModel):
     profile: str | None = _option(
         None, "colour profile of the diver's hands or gloves (default: any skin)", "FILE", min_length=1
     )
-    grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=DECODE)
+    grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=STREAMS)
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
         "N",
-        only=DECODE,
+        only=STREAMS,
         ge=1,
         le=MAX_HOLD,
     )
@@ -64,15 +67,19 @@ class DecodeSettings(BaseModel):
         DEFAULT_FPS,
         f"frames a second of folders of frames; videos have their own time (default: {DEFAULT_FPS:g})",
         "F",
-        only=DECODE,
+        only=(DECODE,),
         gt=0,
         le=MAX_FPS,
         allow_inf_nan=False,
     )
     as_json: bool = _option(False, "records on standard output, one JSON object a line", alias="json")
-    frames: bool = _option(False, "a record for every frame too", only=DECODE)
+    frames: bool = _option(False, "a record for every frame too", only=STREAMS)
     out: str | None = _option(
-        None, "write DIR/<input stem>.jsonl with the records of each input", "DIR", only=DECODE, min_length=1
+        None,
+        "write DIR/<input stem>.jsonl with the records of each input",
+        "DIR",
+        only=(DECODE,),
+        min_length=1,
     )
     debug_dir: str | None = _option(
         None, "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png", "DIR", min_length=1
@@ -88,7 +95,7 @@ def add_options(parser: argparse.ArgumentParser, command: str) -> None:
     """Declare `--config` and the options that `command` has; what is not given stays out of the result."""
     for name, field in DecodeSettings.model_fields.items():
         extra: Any = field.json_schema_extra
-        if extra["only"] not in (None, command):
+        if extra["only"] and command not in extra["only"]:
             continue
         key = field.alias or name
         kind: dict[str, Any] = {"metavar": extra["metavar"]}

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.types import Box
-from lightgesture.models.errors import ModelError
-from lightgesture.models.svm import read_svm
+from lightgesture.models.archive import read_archive
 
-SHIPPED_SVM: Final = Path(__file__).resolve().parent / "data" / "svm.npz"
-"""The model that comes with the package; its card lies beside it."""
+DATA: Final = Path(__file__).resolve().parent / "data"
+SHIPPED: Final = {name: DATA / f"{name}.npz" for name in ("cnn", "svm")}
+"""The models that come with the package; their cards lie beside them."""
+DEFAULT: Final = "svm"
 
 
 class Classifier(Protocol):
@@ -35,13 +36,20 @@ class Classifier(Protocol):
         ...
 
 
-def load_classifier(model: str | os.PathLike[str] = "svm") -> Classifier:
-    """The classifier called `model`, "svm" or "cnn", or read from the model file at that path.
+def load_classifier(model: str | os.PathLike[str] = DEFAULT) -> Classifier:
+    """The classifier called `model`, "cnn" or "svm", or read from the model file at that path.
 
     Raises ModelError if the file is missing, cut off, of another version or not a model.
     """
-    if model == "cnn":
-        raise ModelError("the cnn model is not built yet; use --model svm")
-    if model == "svm":
-        return read_svm(SHIPPED_SVM)
-    return read_svm(Path(model))
+    path = SHIPPED.get(str(model), Path(model))
+    header, arrays = read_archive(path)
+    # Each kind is imported when it is asked for: the net's run-time takes longer to load than all of the other.
+    if header.get("kind") == "cnn":
+        from lightgesture.models.cnn import CnnClassifier
+        from lightgesture.models.cnn_file import cnn_model_from
+
+        return CnnClassifier(cnn_model_from(path, header, arrays))
+    from lightgesture.models.svm import SvmClassifier
+    from lightgesture.models.svm_file import svm_model_from
+
+    return SvmClassifier(svm_model_from(path, header, arrays))

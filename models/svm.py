@@ -7,7 +7,6 @@ of f / temperature (Guo, Pleiss, Sun and Weinberger, "On Calibration of Modern N
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +14,8 @@ from numpy.typing import NDArray
 from lightgesture.features.patch import cut_patches
 from lightgesture.features.types import Box
 from lightgesture.features.vector import feature_vectors
-from lightgesture.models.samples import NONE
-from lightgesture.models.store import SvmModel, read_model
+from lightgesture.models.calibration import none_where_small, softmax
+from lightgesture.models.svm_file import SvmModel
 
 Float = NDArray[np.float32]
 
@@ -41,13 +40,6 @@ def radial_kernel(points: Float, centres: Float, gamma: float, squares: Float | 
 def squared_lengths(rows: Float) -> Float:
     """|r|² of each row of (n, p), float32 (n,)."""
     return np.asarray(np.einsum("ij,ij->i", rows, rows), np.float32)
-
-
-def softmax(scores: Float, temperature: float) -> Float:
-    """Probabilities from scores (n, k), float32 (n, k)."""
-    scaled = scores / np.float32(temperature)
-    powers = np.exp(scaled - scaled.max(axis=1, keepdims=True))
-    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
 
 
 class SvmClassifier:
@@ -82,12 +74,4 @@ class SvmClassifier:
         if not len(patches):
             return np.empty((0, len(model.classes)), np.float32)
         probabilities = softmax(self.scores(feature_vectors(patches, model.features)), model.temperature)
-        if NONE in model.classes:
-            too_small = [max(box[2], box[3]) < model.smallest_hand for box in boxes]
-            probabilities[too_small] = np.eye(len(model.classes), dtype=np.float32)[model.classes.index(NONE)]
-        return probabilities
-
-
-def read_svm(path: Path) -> SvmClassifier:
-    """Read a model file; raises ModelError naming the file and what is wrong with it."""
-    return SvmClassifier(read_model(path))
+        return none_where_small(probabilities, model.classes, boxes, model.smallest_hand)

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.vector import VectorSettings, block_lengths, feature_vectors
+from lightgesture.models.calibration import fit_temperature, softmax
 from lightgesture.models.errors import ModelError
 from lightgesture.models.samples import CLASSES, TrainingSample
-from lightgesture.models.store import SvmModel
-from lightgesture.models.svm import radial_kernel, softmax
+from lightgesture.models.svm import radial_kernel
+from lightgesture.models.svm_file import SvmModel
 
 Float = NDArray[np.float32]
 Double = NDArray[np.float64]
@@ -169,22 +170,6 @@ def sample_weights(truth: NDArray[np.int64], sources: NDArray[np.str_]) -> Float
     for label in np.unique(truth):
         weights[truth == label] /= np.sqrt(weights[truth == label].sum())
     return np.asarray(weights / weights.mean(), np.float32)
-
-
-def fit_temperature(scores: Float, truth: NDArray[np.int64]) -> float:
-    """Temperature of the softmax with the smallest cross-entropy, by search over a finer and finer grid."""
-    best, step = 0.0, np.log(10.0) / 2.0
-    for _ in range(6):
-        logarithms = best + step * np.linspace(-4.0, 4.0, 9)
-        entropies = [_cross_entropy(scores, truth, float(np.exp(point))) for point in logarithms]
-        best = float(logarithms[int(np.argmin(entropies))])
-        step /= 4.0
-    return float(np.exp(best))
-
-
-def _cross_entropy(scores: Float, truth: NDArray[np.int64], temperature: float) -> float:
-    likelihood = softmax(scores, temperature)[np.arange(len(truth)), truth]
-    return float(-np.log(np.maximum(likelihood, 1e-12)).mean())
 
 
 def _describe(

@@ -9,6 +9,7 @@ from lightgesture.errors import UsageError
 
 TARGETS = {
     "svm": ("lightgesture.commands.train_svm", "the classifier of hand patches, quick to train"),
+    "cnn": ("lightgesture.commands.train_cnn", "the small net that reads hand patches"),
     "regions": (
         "lightgesture.commands.train_regions",
         "the selector that tells hands from the rest of a picture",

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from lightgesture.commands.hand_data import add_data_arguments, count
 from lightgesture.commands.train import model_path
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
@@ -12,52 +13,24 @@ from lightgesture.errors import ExitStatus, UsageError
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    parser.add_argument(
-        "--data",
-        metavar="CSV|DIR",
-        help="manifest with the columns path and token, and if known a box (x,y,w,h or hx0..hy1), lm, set, side; "
-        "or a folder with one folder of hand pictures a class",
-    )
-    parser.add_argument(
-        "--backgrounds",
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="pictures without hands: they stand behind altered copies and teach what is no token; repeatable",
-    )
-    parser.add_argument(
-        "--scenes",
-        metavar="CSV",
-        help="whole pictures with boxes (columns file,x,y,w,h, if known face_boxes and set): what lies beside "
-        "the hands teaches what is no token",
-    )
-    parser.add_argument(
-        "--without",
-        action="append",
-        default=[],
-        metavar="SOURCE",
-        help="source of the manifest (column set) that is left out; repeatable",
-    )
+    add_data_arguments(parser)
     parser.add_argument(
         "--synthetic",
-        type=_count,
+        type=count,
         default=0,
         metavar="N",
         help="rendered hands beside the real ones, or alone without --data (default: 0)",
     )
     parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
     parser.add_argument(
-        "--seed", type=_count, default=0, metavar="N", help="of all that is drawn (default: 0)"
-    )
-    parser.add_argument(
         "--copies",
-        type=_count,
+        type=count,
         metavar="N",
         help="altered copies of each hand (default: 4); time grows with them",
     )
     parser.add_argument(
         "--centres",
-        type=_count,
+        type=count,
         metavar="N",
         help="vectors of the machine (default: 5000); size grows with them",
     )
@@ -68,8 +41,9 @@ def run(args: argparse.Namespace) -> int:
     """Train, write the model and its card, and tell the scores of sources held out."""
     from lightgesture.models import ModelError
     from lightgesture.models.train_svm import SvmSettings
+    from lightgesture.training.card import summary
     from lightgesture.training.stream import StreamSettings
-    from lightgesture.training.svm import SvmTraining, summary, train_to_file
+    from lightgesture.training.svm import SvmTraining, train_to_file
 
     if args.data is None and not args.synthetic:
         raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
@@ -129,10 +103,3 @@ class StepBars:
     def _close(self) -> None:
         if self._bar is not None:
             self._bar.close()
-
-
-def _count(text: str) -> int:
-    number = int(text)
-    if number < 0:
-        raise ValueError
-    return number

@@ -1,7 +1,8 @@
-"""The layers of the two nets of the learned choice, as nodes from which both torch and the board build them."""
+"""The layers of the small nets, as nodes from which both torch and the board build them."""
 
 from lightgesture.features import locator, refiner
 from lightgesture.features.network import Node, Shape
+from lightgesture.models import cnn
 
 LOCATOR_INPUT: Shape = (128, 160, 3)
 """The working picture of 160 × 120, filled up to multiples of 16 as `features.locator` does."""
@@ -71,4 +72,59 @@ def refiner_nodes() -> tuple[Node, ...]:
         Node("whole", "dense", ("shape",), 64, activation="relu6"),
         Node(refiner.HAND, "dense", ("whole",), 1),
         Node(refiner.BOX, "dense", ("whole",), 4),
+    )
+
+
+HAND_CHANNELS = {"small": (8, 16, 24, 32, 48), "medium": (12, 24, 40, 40, 64), "large": (16, 32, 56, 64, 96)}
+"""Channels of the five convolutions of a hand net by its size; time grows with their squares."""
+HAND_WHOLE = 44
+"""Numbers in which a hand net sees a patch as a whole."""
+
+
+def hand_nodes(classes: int, contours: int, size: str = "medium") -> tuple[Node, ...]:
+    """A patch seen by five convolutions and one dense layer, and the numbers of its outline, if any, added to that.
+
+    classes: of the answer. contours: numbers of the outline, 0 for a net without.
+    """
+    first, second, third, fourth, fifth = HAND_CHANNELS[size]
+    seen = "none" if contours else "relu6"
+    nodes = [
+        Node("edges1", "conv", (cnn.PATCH,), first, 3, 1, "relu6"),
+        Node("edges2", "conv", ("edges1",), second, 3, 2, "relu6"),
+        Node("fingers1", "conv", ("edges2",), third, 3, 2, "relu6"),
+        Node("fingers2", "conv", ("fingers1",), fourth, 3, 1, "relu6"),
+        Node("shape", "conv", ("fingers2",), fifth, 3, 2, "relu6"),
+        Node("whole", "dense", ("shape",), HAND_WHOLE, activation=seen),
+    ]
+    last = "whole"
+    if contours:
+        # The sum of two dense layers is one dense layer over both inputs side by side.
+        nodes.append(Node("outline", "dense", (cnn.CONTOUR,), HAND_WHOLE))
+        nodes.append(Node("both", "add", ("whole", "outline"), activation="relu6"))
+        last = "both"
+    return (*nodes, Node(cnn.SCORES, "dense", (last,), classes))
+
+
+def teacher_nodes(classes: int, channels: tuple[int, int, int] = (32, 64, 112)) -> tuple[Node, ...]:
+    """A larger net for the same patches, which a hand net learns from; it never leaves the training."""
+
+    def block(name: str, source: str, count: int) -> list[Node]:
+        return [
+            Node(f"{name}_first", "conv", (source,), count, 3, 1, "relu6"),
+            Node(f"{name}_second", "conv", (f"{name}_first",), count, 3, 1),
+            Node(name, "add", (source, f"{name}_second"), activation="relu6"),
+        ]
+
+    fine, middle, coarse = channels
+    return (
+        Node("stem", "conv", (cnn.PATCH,), fine, 3, 1, "relu6"),
+        Node("fine", "conv", ("stem",), fine, 3, 2, "relu6"),
+        *block("fine1", "fine", fine),
+        Node("middle", "conv", ("fine1",), middle, 3, 2, "relu6"),
+        *block("middle1", "middle", middle),
+        *block("middle2", "middle1", middle),
+        Node("coarse", "conv", ("middle2",), coarse, 3, 2, "relu6"),
+        *block("coarse1", "coarse", coarse),
+        Node("whole", "dense", ("coarse1",), 128, activation="relu6"),
+        Node(cnn.SCORES, "dense", ("whole",), classes),
     )

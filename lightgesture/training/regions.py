@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from lightgesture.errors import InputError, UsageError
+from lightgesture.errors import InputError
 from lightgesture.features.learned import Places
 from lightgesture.features.learned_training import fit_place_pairs, fit_places, look
 from lightgesture.features.network import IntegerNetwork
@@ -17,6 +17,7 @@ from lightgesture.features.selector_file import ClassicalParts, LearnedParts, Se
 from lightgesture.features.training import BoxedPicture, fit_pairs, fit_regions
 from lightgesture.results.atomic import replacing
 from lightgesture.training.bank import make_bank
+from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.left_out import CARD_KEY, LeftOut
 from lightgesture.training.picture_pool import Ingredients, compose_pool
 from lightgesture.training.region_pictures import Material, PictureSettings, read_material, variants
@@ -77,28 +78,6 @@ def train_regions(
     classical = _classical(data, for_nets, composed, second, without, seed)
     save_selector(out, Selector(classical, LearnedParts(*learned, places, pairs)))
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
-
-
-def need_torch() -> None:
-    """Raises UsageError where torch is not installed."""
-    try:
-        import torch  # noqa: F401
-    except ImportError as error:
-        raise UsageError(
-            'torch is not installed, which trains the nets; pip install "lightgesture[train]"'
-        ) from error
-
-
-def checkpoint_folder(out: Path, request: dict[str, object]) -> Path:
-    """The folder of what is done; UsageError where it belongs to another training."""
-    folder = out.with_suffix(".parts")
-    note, text = folder / "request.json", json.dumps(request, sort_keys=True)
-    if note.exists() and note.read_text(encoding="utf-8") != text:
-        raise UsageError(f"{folder}: holds parts of another training; remove it or give another --out")
-    if not note.exists():
-        with replacing(note) as temporary:
-            temporary.write_text(text, encoding="utf-8")
-    return folder
 
 
 def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
@@ -193,7 +172,7 @@ def _write_card(
         "seed": seed,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),
-        "peak_memory_mib": _peak_memory_mib(),
+        "peak_memory_mib": peak_memory_mib(),
         "versions": {
             "numpy": np.__version__,
             "opencv": cv2.__version__,
@@ -203,12 +182,3 @@ def _write_card(
     }
     with replacing(out.with_suffix(".json")) as temporary:
         temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")
-
-
-def _peak_memory_mib() -> int | None:
-    """Of this process without its workers; None where the system does not tell."""
-    try:
-        import resource
-    except ImportError:
-        return None
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024

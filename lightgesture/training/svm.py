@@ -11,7 +11,8 @@ from typing import Any
 from lightgesture._version import __version__
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import CLASSES
-from lightgesture.models.store import SvmModel, write_file, write_model
+from lightgesture.models.archive import write_file
+from lightgesture.models.svm_file import SvmModel, write_svm_model
 from lightgesture.models.train_svm import HeldOut, Progress, SvmSettings, train_svm
 from lightgesture.training.card import LIMITS, data_section, held_out_section
 from lightgesture.training.negatives import Scene, read_backgrounds, read_scenes
@@ -72,7 +73,7 @@ def train_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[
     )
     card = make_card(training, rows, (backgrounds, scenes), model, held_out)
     card["training"]["seconds"] = round(time.monotonic() - started)
-    write_model(model, out)
+    write_svm_model(model, out)
     write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
     return card
 
@@ -128,17 +129,3 @@ def make_card(
         },
         "held_out_sources": held_out_section(held_out, model.classes),
     }
-
-
-def summary(card: dict[str, Any], out: Path) -> list[str]:
-    """What a user wants to know first, a line each."""
-    scores = card["held_out_sources"]
-    words = [f"{name} {value:.3f}" for name, value in scores["per_class"].items() if value is not None]
-    return [
-        f"{card['training']['samples']} samples of {card['data']['sources']} sources"
-        f" in {card['training']['seconds']} s",
-        f"sources held out: {scores['accuracy']} of the tokens right, {scores['accuracy_of_altered_copies']} of the"
-        " altered copies",
-        "per class: " + ", ".join(words),
-        f"wrote {out} ({out.stat().st_size / 1e6:.2f} MB) and {out.with_suffix('.json')}",
-    ]

@@ -1,9 +1,7 @@
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
-import pytest
 from sklearn.kernel_approximation import Nystroem
 from sklearn.linear_model import Ridge
 from sklearn.metrics.pairwise import rbf_kernel
@@ -11,11 +9,10 @@ from sklearn.multiclass import OneVsRestClassifier
 from sklearn.svm import SVC
 
 from lightgesture.features.vector import block_lengths, feature_vectors
-from lightgesture.models import CLASSES, ModelError, TrainingSample, load_classifier
+from lightgesture.models import TrainingSample, load_classifier
 from lightgesture.models import train_svm as training
-from lightgesture.models.loading import SHIPPED_SVM
-from lightgesture.models.store import SvmModel
 from lightgesture.models.svm import SvmClassifier, radial_kernel, softmax
+from lightgesture.models.svm_file import SvmModel
 from lightgesture.models.train_svm import SvmSettings, train_svm
 
 Draw = Callable[[str, int], np.ndarray]
@@ -71,61 +68,8 @@ def test_probabilities_are_a_softmax_over_the_temperature() -> None:
     np.testing.assert_allclose(softmax(scores, 0.5), expected, rtol=1e-6)
 
 
-def test_the_shipped_model_knows_all_classes_and_is_small() -> None:
-    assert load_classifier("svm").classes == CLASSES
-    assert SHIPPED_SVM.stat().st_size <= 2e6
-    assert SHIPPED_SVM.with_suffix(".json").is_file()
-
-
-def test_a_mirrored_hand_of_the_other_side_reads_the_same(draw: Draw) -> None:
-    picture = draw("1", 0)
-    classifier = load_classifier()
-    left = classifier.probabilities(picture, [(10, 5, 30, 50)], ["left"])
-    mirrored = np.ascontiguousarray(picture[:, ::-1])
-    right = classifier.probabilities(mirrored, [(60 - 40, 5, 30, 50)], ["right"])
-    np.testing.assert_allclose(left, right, atol=1e-5)
-
-
-def test_rows_are_distributions_in_the_order_of_the_boxes(draw: Draw) -> None:
-    picture = np.concatenate([draw("1", 1), draw("5", 2)], axis=1)
-    classifier = load_classifier()
-    boxes = [(5, 5, 50, 50), (65, 5, 50, 50)]
-    both = classifier.probabilities(picture, boxes, ["right", "left"])
-    assert both.shape == (2, 11)
-    assert both.dtype == np.float32
-    np.testing.assert_allclose(both.sum(axis=1), 1.0, atol=1e-5)
-    second = classifier.probabilities(picture, boxes[1:], ["left"])
-    np.testing.assert_allclose(both[1:], second, atol=1e-5)
-    assert classifier.probabilities(picture, [], []).shape == (0, 11)
-
-
-def test_a_hand_too_small_to_be_read_is_none(draw: Draw) -> None:
-    probabilities = load_classifier().probabilities(draw("5", 0), [(20, 20, 8, 8)], ["left"])
-    assert probabilities[0, CLASSES.index("none")] == 1.0
-
-
-def test_grey_pictures_are_read(draw: Draw) -> None:
-    grey = draw("5", 0)[..., 0]
-    assert load_classifier().probabilities(grey, [(5, 5, 50, 50)], ["left"]).shape == (1, 11)
-
-
-def test_boxes_outside_the_picture_are_refused(draw: Draw) -> None:
-    with pytest.raises(ValueError, match="outside"):
-        load_classifier().probabilities(draw("5", 0), [(90, 5, 50, 50)], ["left"])
-
-
-def test_the_cnn_is_refused_with_the_remedy() -> None:
-    with pytest.raises(ModelError, match="not built yet; use --model svm"):
-        load_classifier("cnn")
-
-
-def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="no such thing"):
-        load_classifier(tmp_path / "no such thing.npz")
-
-
 def test_the_vector_length_matches_the_shipped_model() -> None:
-    classifier = load_classifier()
+    classifier = load_classifier("svm")
     assert isinstance(classifier, SvmClassifier)
     model: SvmModel = classifier.model
     assert model.mean.shape == (sum(block_lengths(model.features)),)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lightgesture.models import ModelError, TrainingSample, load_classifier
-from lightgesture.models.store import SvmModel, read_model, write_model
+from lightgesture.models.svm_file import SvmModel, read_svm_model, write_svm_model
 from lightgesture.models.train_svm import SvmSettings, train_svm
 
 
@@ -19,7 +19,7 @@ def model(samples: list[TrainingSample], quick: SvmSettings) -> SvmModel:
 
 @pytest.fixture
 def path(model: SvmModel, tmp_path: Path) -> Path:
-    write_model(model, tmp_path / "model.npz")
+    write_svm_model(model, tmp_path / "model.npz")
     return tmp_path / "model.npz"
 
 
@@ -36,7 +36,7 @@ def changed(path: Path, change: Callable[[dict[str, Any], dict[str, np.ndarray]]
 
 
 def test_a_written_model_reads_back_the_same(model: SvmModel, path: Path) -> None:
-    back = read_model(path)
+    back = read_svm_model(path)
     assert back.classes == model.classes
     assert back.features == model.features
     assert (back.gamma, back.temperature, back.smallest_hand) == (
@@ -54,7 +54,7 @@ def test_every_cut_is_refused(path: Path) -> None:
     for length in range(0, len(whole), max(1, len(whole) // 40)):
         path.write_bytes(whole[:length])
         with pytest.raises(ModelError) as refusal:
-            read_model(path)
+            read_svm_model(path)
         assert str(path) in str(refusal.value)
         assert "\n" not in str(refusal.value)
 
@@ -68,7 +68,7 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes) -> None:
 
 def test_a_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be read"):
-        read_model(tmp_path)
+        read_svm_model(tmp_path)
 
 
 def test_a_pickle_is_never_opened(tmp_path: Path) -> None:
@@ -78,19 +78,19 @@ def test_a_pickle_is_never_opened(tmp_path: Path) -> None:
     with (tmp_path / "pickle.npz").open("wb") as stream:
         np.savez(stream, header=header, **arrays)  # type: ignore[arg-type]
     with pytest.raises(ModelError, match="pickle"):
-        read_model(tmp_path / "pickle.npz")
+        read_svm_model(tmp_path / "pickle.npz")
 
 
 def test_another_version_is_refused(path: Path) -> None:
     changed(path, lambda header, arrays: header.update(format=99))
     with pytest.raises(ModelError, match="format 99"):
-        read_model(path)
+        read_svm_model(path)
 
 
 def test_another_kind_is_refused(path: Path) -> None:
     changed(path, lambda header, arrays: header.update(kind="forest"))
     with pytest.raises(ModelError, match="no svm model"):
-        read_model(path)
+        read_svm_model(path)
 
 
 @pytest.mark.parametrize("name", ["mean", "projection", "centres", "weights", "bias"])
@@ -101,7 +101,7 @@ def test_wrong_shapes_and_nan_are_refused(path: Path, name: str) -> None:
         arrays[name] = arrays[name][:-1]
 
     with pytest.raises(ModelError, match="shape"):
-        read_model(changed(path, cut))
+        read_svm_model(changed(path, cut))
     path.write_bytes(whole)
 
     def spoil(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -109,7 +109,7 @@ def test_wrong_shapes_and_nan_are_refused(path: Path, name: str) -> None:
         arrays[name].flat[0] = np.nan
 
     with pytest.raises(ModelError, match="NaN"):
-        read_model(changed(path, spoil))
+        read_svm_model(changed(path, spoil))
 
 
 @pytest.mark.parametrize(
@@ -131,12 +131,12 @@ def test_wrong_shapes_and_nan_are_refused(path: Path, name: str) -> None:
 )
 def test_a_damaged_header_is_refused_in_one_line(path: Path, change: Callable[..., None]) -> None:
     with pytest.raises(ModelError) as refusal:
-        read_model(changed(path, change))
+        read_svm_model(changed(path, change))
     assert str(path) in str(refusal.value)
     assert "\n" not in str(refusal.value)
 
 
 def test_a_model_that_cannot_be_written_leaves_nothing(model: SvmModel, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be written"):
-        write_model(model, tmp_path / "missing" / "model.npz")
+        write_svm_model(model, tmp_path / "missing" / "model.npz")
     assert not list(tmp_path.iterdir())

@@ -1,0 +1,101 @@
+"""`lightgesture train cnn`: the small net that reads hand patches."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lightgesture.commands.hand_data import add_data_arguments, count
+from lightgesture.commands.train import model_path
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+
+if TYPE_CHECKING:
+    from lightgesture.training.cnn import CnnTraining
+
+SIZES = ("small", "medium", "large")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_data_arguments(parser)
+    parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
+    parser.add_argument(
+        "--size",
+        choices=SIZES,
+        default="medium",
+        help="of the net; a larger one reads better and takes longer",
+    )
+    parser.add_argument(
+        "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
+    )
+    parser.add_argument(
+        "--steps",
+        type=count,
+        metavar="N",
+        help="of the training (default: 16000); the teacher takes half of them",
+    )
+    parser.add_argument(
+        "--no-teacher",
+        action="store_true",
+        help="learn from the labels alone, without a larger net's answers",
+    )
+    parser.add_argument(
+        "--copies",
+        type=count,
+        metavar="N",
+        help="altered copies of each hand (default: 24); time and disk grow",
+    )
+    parser.add_argument(
+        "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 8000)"
+    )
+    parser.add_argument("--jobs", type=count, default=1, metavar="N", help="processes that draw (default: 1)")
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train, write the model and its card, and tell the scores of sources held out."""
+    from lightgesture.models import ModelError
+    from lightgesture.training.card import summary
+    from lightgesture.training.cnn import train_cnn_to_file
+
+    out = model_path(args.out)
+    progress = (lambda _: None) if args.quiet else say
+    try:
+        card = train_cnn_to_file(_training(args), out, progress)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if not args.quiet:
+        for line in summary(card, out):
+            say(line)
+    return ExitStatus.OK
+
+
+def _training(args: argparse.Namespace) -> "CnnTraining":
+    from lightgesture.training.cnn import CnnTraining
+
+    if args.data is None:
+        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    for name, value in (("steps", args.steps), ("jobs", args.jobs), ("copies", args.copies)):
+        if value == 0:
+            raise UsageError(f"--{name} is 0; it must be 1 or more")
+    training = CnnTraining(
+        data=Path(args.data),
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        without=tuple(args.without),
+        seed=args.seed,
+        jobs=args.jobs,
+        size=args.size,
+        contours=args.outline,
+    )
+    if args.steps is not None:
+        training = replace(training, steps=args.steps, teacher_steps=max(1, args.steps // 2))
+    if args.no_teacher:
+        training = replace(training, teacher_steps=0)
+    pool = training.pool
+    if args.copies is not None:
+        pool = replace(pool, copies=args.copies)
+    if args.synthetic is not None:
+        pool = replace(pool, rendered=args.synthetic)
+    return replace(training, pool=pool)

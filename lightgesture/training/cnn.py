@@ -1,0 +1,237 @@
+"""From a manifest to a hand net and its card: the training of the CNN from end to end."""
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture._version import __version__
+from lightgesture.datasets import fold_of
+from lightgesture.features.contours import contour_length
+from lightgesture.features.patch import cut_patch
+from lightgesture.models import CLASSES
+from lightgesture.models.archive import write_file
+from lightgesture.models.calibration import fit_temperature, softmax
+from lightgesture.models.cnn import CnnClassifier, CnnModel
+from lightgesture.models.cnn_file import write_cnn_model
+from lightgesture.models.train_svm import HeldOut
+from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
+from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
+from lightgesture.training.hand_samples import HandSamples
+from lightgesture.training.negatives import read_backgrounds, read_scenes
+from lightgesture.training.patch_pool import Originals, PatchPool, PoolSettings, make_pool
+from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+
+if TYPE_CHECKING:
+    from lightgesture.training.hand_net import NetSettings
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class CnnTraining:
+    """What is trained from what.
+
+    data: manifest, or folder with a folder a class. backgrounds: folders of pictures without hands. scenes: table of
+    whole pictures with boxes of hands and faces, or None. without: sources of `data` that are left out. seed: of
+    everything drawn. jobs: processes that draw patches.
+    size: of the net, "small", "medium" or "large". contours: whether it looks at the outline's numbers, too.
+    steps: of the optimiser. teacher_steps: of the larger net that it learns from, 0 for none.
+    one_in: of so many sources, one is kept from the net, for the temperature and the scores of the card.
+    smallest_hand: longer side of the smallest box that is read, pixels. pool: what is drawn.
+    """
+
+    data: Path
+    backgrounds: tuple[Path, ...] = ()
+    scenes: Path | None = None
+    without: tuple[str, ...] = ()
+    seed: int = 0
+    jobs: int = 1
+    size: str = "medium"
+    contours: bool = False
+    steps: int = 16000
+    teacher_steps: int = 8000
+    one_in: int = 12
+    smallest_hand: int = 12
+    pool: PoolSettings = field(default_factory=PoolSettings)
+
+
+def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> dict[str, Any]:
+    """Train, write `out` and the card beside it (suffix .json), and return the card.
+
+    What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
+    when the files are written. Raises InputError for unreadable data, UsageError without torch.
+    """
+    need_torch()
+    started = time.monotonic()
+    rows = [row for row in read_rows(training.data) if row.source not in training.without]
+    folder = checkpoint_folder(out, {"training": repr(replace(training, jobs=1)), "rows": len(rows)})
+    progress(f"reading {len(rows)} hands")
+    originals = read_originals(training, rows)
+    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, _told(progress))
+    kept = kept_out(originals.hands, training.one_in)
+    present = {row.token for row in rows}
+    classes = tuple(name for name in CLASSES if name in present)
+    model = fit(pool, ~_rows_of(pool, originals.hands, kept), classes, training, folder, progress)
+    held_out = answers(model, originals, pool, kept)
+    model = replace(model, temperature=fit_temperature(*_logits(held_out)))
+    calibrated = replace(held_out, probabilities=softmax(held_out.probabilities, model.temperature))
+    card = make_card(training, rows, originals, model, calibrated)
+    card["training"]["seconds"] = round(time.monotonic() - started)
+    card["training"]["peak_memory_mib"] = peak_memory_mib()
+    write_cnn_model(model, out)
+    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    return card
+
+
+def read_originals(training: CnnTraining, rows: Sequence[HandRow]) -> Originals:
+    """All pictures. Raises InputError."""
+    negative = training.pool.negative
+    return Originals(
+        [load_hand(row) for row in rows],
+        [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)],
+        read_scenes(training.scenes, negative) if training.scenes else (),
+    )
+
+
+def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
+    """Which hands are kept from the net, bool (n,): whole sources, or where those are few, one hand in so many."""
+    kept = np.array([fold_of(hand.source, one_in) == 0 for hand in hands])
+    if 0 < kept.mean() < 2.0 / one_in:
+        return kept
+    return np.asarray(np.arange(len(hands)) % one_in == 0)
+
+
+def fit(
+    pool: PatchPool,
+    chosen: NDArray[np.bool_],
+    classes: tuple[str, ...],
+    training: CnnTraining,
+    folder: Path,
+    progress: Progress,
+) -> CnnModel:
+    """A net trained on the chosen rows of the pool, in integers, its temperature not yet fitted."""
+    from lightgesture.training.architectures import hand_nodes, teacher_nodes
+    from lightgesture.training.hand_net import OutlineScale, make_net, to_integers, train_hand_net
+
+    settings, seed, patch = net_settings(training), training.seed, training.pool.patch
+    samples = HandSamples(pool, chosen, classes, training.pool.margin)
+    length = contour_length(training.pool.contour) if training.contours else 0
+    outlines = pool.contours[:, :length].astype(np.float32)
+    scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))
+    teacher = None
+    if training.teacher_steps:
+        larger = make_net(teacher_nodes(len(classes)), patch.size, 0, seed)
+        how = replace(settings, steps=training.teacher_steps)
+        teacher = train_hand_net(larger, samples, scale, how, seed + 1, folder / "teacher.pt", progress)
+    net = make_net(hand_nodes(len(classes), length, training.size), patch.size, length, seed)
+    net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress, teacher)
+    return CnnModel(
+        classes=classes,
+        patch=patch,
+        network=to_integers(net, samples, scale, settings, seed),
+        temperature=1.0,
+        smallest_hand=training.smallest_hand,
+        contour=training.pool.contour if training.contours else None,
+        contour_mean=scale.mean,
+        contour_deviation=scale.deviation,
+    )
+
+
+def net_settings(training: CnnTraining) -> "NetSettings":
+    """Those of the optimiser."""
+    from lightgesture.training.hand_net import NetSettings
+
+    return NetSettings(steps=training.steps)
+
+
+def answers(model: CnnModel, originals: Originals, pool: PatchPool, kept: NDArray[np.bool_]) -> HeldOut:
+    """Scores, in the place of probabilities, for the hands that were kept out and an altered copy of each."""
+    classifier, hands = CnnClassifier(model), [originals.hands[int(index)] for index in np.flatnonzero(kept)]
+    plain = [cut_patch(hand.image, hand.box, hand.side, model.patch) for hand in hands]
+    first_copies = {int(hand): row for row, hand in reversed(list(enumerate(pool.hands))) if hand >= 0}
+    rows = [first_copies[int(index)] for index in np.flatnonzero(kept)]
+    margin = (pool.patches.shape[1] - model.patch.size) // 2
+    inner = slice(margin, margin + model.patch.size)
+    altered = [np.ascontiguousarray(pool.patches[row, inner, inner]) for row in rows]
+    number = {name: index for index, name in enumerate(model.classes)}
+    truth = [number[hand.token] for hand in hands] + [number[str(pool.tokens[row])] for row in rows]
+    sources = [hand.source for hand in hands]
+    return HeldOut(
+        classifier.scores(np.stack([*plain, *altered])),
+        np.array(truth, np.int64),
+        np.array(sources * 2),
+        np.arange(2 * len(hands)) < len(hands),
+    )
+
+
+def make_card(
+    training: CnnTraining, rows: Sequence[HandRow], originals: Originals, model: CnnModel, held_out: HeldOut
+) -> dict[str, Any]:
+    """The card of a trained net, ready for JSON."""
+    import torch
+
+    from lightgesture.features.network_nodes import multiply_adds
+
+    return {
+        "name": "cnn",
+        "version": __version__,
+        "what": "hand patch to token: a net of five convolutions and one dense layer, 8-bit integers",
+        "classes": list(model.classes),
+        "use": "bare hands of a diver facing the camera, in boxes of lightgesture's selector",
+        "limits": list(LIMITS),
+        "data": {
+            **data_section(rows),
+            "backgrounds": {
+                "pictures": len(originals.backgrounds),
+                "sources": sorted({scene.source for scene in originals.backgrounds}),
+            },
+            "scenes": {
+                "pictures": len(originals.scenes),
+                "sources": len({scene.source for scene in originals.scenes}),
+            },
+            "left_out": list(training.without),
+            "rendered_hands": training.pool.rendered,
+        },
+        "training": {
+            "seed": training.seed,
+            "steps": {"net": training.steps, "teacher": training.teacher_steps},
+            "settings": {"pool": asdict(training.pool), "net": asdict(net_settings(training))},
+            "kept_from_the_net": f"one in {training.one_in} sources, for the temperature and the scores below",
+            "torch": str(torch.__version__),
+        },
+        "model": {
+            "weights": int(sum(own.weights.size + own.biases.size for own in model.network.weights.values())),
+            "multiply_adds": multiply_adds(model.network.inputs, model.network.nodes),
+            "looks_at_the_outline": model.contour is not None,
+            "temperature": model.temperature,
+        },
+        "held_out_sources": held_out_section(held_out, model.classes),
+        "operating_points": operating_points(held_out, model.classes),
+    }
+
+
+def _logits(held_out: HeldOut) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    return held_out.probabilities, held_out.truth
+
+
+def _rows_of(pool: PatchPool, hands: Sequence[LabelledHand], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rows of the pool that show a chosen hand, or another region of a source of which every hand is chosen."""
+    others = {hand.source for hand, is_chosen in zip(hands, chosen, strict=True) if not is_chosen}
+    whole = {hand.source for hand in hands} - others
+    return np.where(pool.hands >= 0, chosen[pool.hands], np.isin(pool.sources, sorted(whole)))
+
+
+def _told(progress: Progress) -> Callable[[str, int, int], None]:
+    """Every tenth of a step as a line."""
+
+    def show(step: str, done: int, total: int) -> None:
+        if done * 10 // total > (done - 1) * 10 // total:
+            progress(f"{step}: {done} of {total}")
+
+    return show

@@ -1,0 +1,128 @@
+"""Training of a hand net on a pool of patches, if wanted from a larger net's answers too. Needs torch."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.nn import functional
+
+from lightgesture.features.network import IntegerNetwork, Node, Shape
+from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
+from lightgesture.training.hand_samples import HandBatch, HandSamples, standardised
+from lightgesture.training.net_training import Batch, LoopSettings, train_net
+from lightgesture.training.quantise import quantise
+from lightgesture.training.torch_network import TorchNetwork
+
+Float = NDArray[np.float32]
+STANDARD_RANGE = (-3.0, 3.0)
+"""Of the standardised values of patches and outlines."""
+CALIBRATION = 12
+"""Batches from which the range of each tensor is measured."""
+AT_ONCE = 512
+"""Patches that are answered at once, which bounds the memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class NetSettings:
+    """steps, batch, rate: of the optimiser. smoothing: share of the truth that is spread over all classes, 0 to 0.2.
+    taught: share of the loss that is the distance to the teacher's answers, 0 to 1. softness: temperature of both nets'
+    answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
+
+    steps: int = 12000
+    batch: int = 128
+    rate: float = 3e-3
+    smoothing: float = 0.05
+    taught: float = 0.7
+    softness: float = 3.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OutlineScale:
+    """mean, deviation: float32 (c,), of the outline's numbers; empty for a net without."""
+
+    mean: Float
+    deviation: Float
+
+    def apply(self, contours: Float) -> Float:
+        """Standardised, float32 (n, c), within the range that the integers hold."""
+        values = (contours - self.mean) / self.deviation
+        return np.asarray(np.clip(values, *STANDARD_RANGE), np.float32)
+
+
+def make_net(nodes: tuple[Node, ...], size: int, contours: int, seed: int) -> TorchNetwork:
+    """A net with random weights for patches of `size` pixels and so many numbers of the outline."""
+    torch.manual_seed(seed)
+    inputs: dict[str, Shape] = {PATCH: (size, size, 3)}
+    if contours:
+        inputs[CONTOUR] = (1, 1, contours)
+    return TorchNetwork(inputs, nodes, (SCORES,))
+
+
+def train_hand_net(
+    net: TorchNetwork,
+    samples: HandSamples,
+    scale: OutlineScale,
+    settings: NetSettings,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
+    teacher: TorchNetwork | None = None,
+) -> TorchNetwork:
+    """The trained net in floating point; goes on at `checkpoint` where there is one."""
+
+    def batch(rng: np.random.Generator) -> Batch:
+        drawn = samples.draw(rng, settings.batch)
+        inputs = inputs_of(drawn, scale if CONTOUR in net.inputs else None)
+        truth: tuple[Tensor, ...] = (torch.from_numpy(drawn.truth),)
+        if teacher is not None:
+            with torch.no_grad():
+                truth = (*truth, teacher({PATCH: inputs[PATCH]})[SCORES])
+        return inputs, truth
+
+    def loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
+        scores = outputs[SCORES]
+        own = functional.cross_entropy(scores, truth[0], label_smoothing=settings.smoothing)
+        if len(truth) == 1:
+            return own
+        soft = settings.softness
+        wanted = torch.softmax(truth[1] / soft, dim=1)
+        far = functional.kl_div(torch.log_softmax(scores / soft, dim=1), wanted, reduction="batchmean")
+        return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
+
+    loop = LoopSettings(settings.steps, settings.rate, warm_up=min(300, settings.steps // 4))
+    return train_net(net, batch, loss, loop, seed, checkpoint, progress)
+
+
+def to_integers(
+    net: TorchNetwork, samples: HandSamples, scale: OutlineScale, settings: NetSettings, seed: int
+) -> IntegerNetwork:
+    """The net in integers, the ranges of its tensors measured on batches of its own training."""
+    drawn = (
+        samples.draw(np.random.default_rng((seed, settings.steps + 1, i)), 128) for i in range(CALIBRATION)
+    )
+    known = scale if CONTOUR in net.inputs else None
+    return quantise(net, (inputs_of(one, known) for one in drawn), dict.fromkeys(net.inputs, STANDARD_RANGE))
+
+
+def inputs_of(batch: HandBatch, scale: OutlineScale | None) -> dict[str, Tensor]:
+    """A batch as the net's inputs; scale: None for a net without outline."""
+    inputs = {PATCH: torch.from_numpy(batch.patches).permute(0, 3, 1, 2)}
+    if scale is not None:
+        inputs[CONTOUR] = torch.from_numpy(scale.apply(batch.contours))[:, :, None, None]
+    return inputs
+
+
+def scores_of(net: TorchNetwork, patches: NDArray[np.uint8], contours: Float, scale: OutlineScale) -> Float:
+    """Scores of patches, uint8 (n, size, size, 3), by the net in floating point: float32 (n, k)."""
+    found = []
+    known = scale if CONTOUR in net.inputs else None
+    for first in range(0, len(patches), AT_ONCE):
+        part = slice(first, first + AT_ONCE)
+        batch = HandBatch(standardised(patches[part]), contours[part], np.zeros(0, np.int64))
+        with torch.no_grad():
+            found.append(net(inputs_of(batch, known))[SCORES].numpy())
+    return np.concatenate(found)

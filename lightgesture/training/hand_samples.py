@@ -1,0 +1,88 @@
+"""Batches for a hand net, drawn from a pool of altered patches."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.standardise import StandardSettings
+from lightgesture.models.train_svm import sample_weights
+from lightgesture.training.patch_pool import PatchPool
+
+Float = NDArray[np.float32]
+Random = np.random.Generator
+
+_ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))
+
+
+@dataclass(frozen=True, slots=True)
+class HandSampling:
+    """What becomes of a patch each time it is seen. erased: share of patches of which a part is covered, 0 to 1.
+    largest: side of that part over the patch's, 0 to 1."""
+
+    erased: float = 0.2
+    largest: float = 0.4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandBatch:
+    """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,)."""
+
+    patches: Float
+    contours: Float
+    truth: NDArray[np.int64]
+
+
+def standardised(patches: NDArray[np.uint8]) -> Float:
+    """What `features.standardise.channel_tables` makes of each patch, (n, h, w, 3), for many at once."""
+    settings = StandardSettings()
+    roots = _ROOTS[patches]
+    mean = roots.mean(axis=(1, 2), keepdims=True)
+    variance = np.square(roots).mean(axis=(1, 2), keepdims=True) - np.square(mean)
+    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(settings.evenness))
+    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32)
+
+
+class HandSamples:
+    """Draws from the rows of a pool that are chosen, so that no person and no class rules."""
+
+    def __init__(
+        self,
+        pool: PatchPool,
+        chosen: NDArray[np.bool_],
+        classes: Sequence[str],
+        margin: int,
+        settings: HandSampling | None = None,
+    ) -> None:
+        """chosen: bool (n,), of the pool. margin: pixels by which a patch may be shifted each way."""
+        self._pool, self._margin, self._settings = pool, margin, settings or HandSampling()
+        self._rows = np.flatnonzero(chosen)
+        index = {name: number for number, name in enumerate(classes)}
+        self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
+        weights = sample_weights(self._truth, pool.sources[self._rows]).astype(np.float64)
+        self._cumulative = np.cumsum(weights) / weights.sum()
+
+    def draw(self, random: Random, count: int) -> HandBatch:
+        """`count` patches."""
+        drawn = np.minimum(np.searchsorted(self._cumulative, random.random(count)), len(self._rows) - 1)
+        rows = self._rows[drawn]
+        seen = standardised(self._shifted(rows, random))
+        self._erase(seen, random)
+        return HandBatch(seen, self._pool.contours[rows].astype(np.float32), self._truth[drawn])
+
+    def _shifted(self, rows: NDArray[np.int64], random: Random) -> NDArray[np.uint8]:
+        size = self._pool.patches.shape[1] - 2 * self._margin
+        corners = random.integers(2 * self._margin + 1, size=(len(rows), 2))
+        parts = [
+            self._pool.patches[row, top : top + size, left : left + size]
+            for row, (top, left) in zip(rows, corners, strict=True)
+        ]
+        return np.stack(parts)
+
+    def _erase(self, seen: Float, random: Random) -> None:
+        size = seen.shape[1]
+        for number in np.flatnonzero(random.random(len(seen)) < self._settings.erased):
+            height, width = random.integers(2, max(3, round(self._settings.largest * size)), 2)
+            top, left = random.integers(size - height + 1), random.integers(size - width + 1)
+            seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)

@@ -1,0 +1,47 @@
+"""From scores to calibrated probabilities, the same for every classifier."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.types import Box
+from lightgesture.models.samples import NONE
+
+Float = NDArray[np.float32]
+
+
+def softmax(scores: Float, temperature: float) -> Float:
+    """Probabilities from scores (n, k), float32 (n, k)."""
+    scaled = scores / np.float32(temperature)
+    powers = np.exp(scaled - scaled.max(axis=1, keepdims=True))
+    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
+
+
+def fit_temperature(scores: Float, truth: NDArray[np.int64]) -> float:
+    """Temperature of the softmax with the smallest cross-entropy, by search over a finer and finer grid.
+
+    Guo, Pleiss, Sun and Weinberger, "On Calibration of Modern Neural Networks", ICML 2017.
+    """
+    best, step = 0.0, np.log(10.0) / 2.0
+    for _ in range(6):
+        logarithms = best + step * np.linspace(-4.0, 4.0, 9)
+        entropies = [_cross_entropy(scores, truth, float(np.exp(point))) for point in logarithms]
+        best = float(logarithms[int(np.argmin(entropies))])
+        step /= 4.0
+    return float(np.exp(best))
+
+
+def none_where_small(
+    probabilities: Float, classes: Sequence[str], boxes: Sequence[Box], smallest_hand: int
+) -> Float:
+    """The same, with certainty of `none` where the longer side of a box has fewer pixels than `smallest_hand`."""
+    if NONE in classes:
+        too_small = [max(box[2], box[3]) < smallest_hand for box in boxes]
+        probabilities[too_small] = np.eye(len(classes), dtype=np.float32)[list(classes).index(NONE)]
+    return probabilities
+
+
+def _cross_entropy(scores: Float, truth: NDArray[np.int64], temperature: float) -> float:
+    likelihood = softmax(scores, temperature)[np.arange(len(truth)), truth]
+    return float(-np.log(np.maximum(likelihood, 1e-12)).mean())

@@ -1,0 +1,88 @@
+"""A tiny convolutional net in integers that names the token of a patch.
+
+The net is data (`features.network`): LiteRT runs it where installed, NumPy computes the same integers elsewhere. It may
+look at the numbers of the patch's outline, too. Patches are standardised channel by channel first
+(`features.standardise`), so that cast, veil and exposure drop out.
+Probabilities are the softmax of scores / temperature (Guo, Pleiss, Sun and Weinberger, "On Calibration of Modern Neural
+Networks", ICML 2017).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.contours import ContourSettings, contour_vectors
+from lightgesture.features.network import IntegerNetwork
+from lightgesture.features.network_runner import Backend, Network
+from lightgesture.features.patch import PatchSettings, cut_patches
+from lightgesture.features.standardise import channel_tables
+from lightgesture.features.types import Box
+from lightgesture.models.calibration import none_where_small, softmax
+
+Float = NDArray[np.float32]
+
+PATCH: Final = "patch"
+CONTOUR: Final = "contour"
+SCORES: Final = "scores"
+"""Tensors of the net: standardised blue, green and red; standardised numbers of the outline; one score a class."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CnnModel:
+    """All that the net needs on the board.
+
+    classes: k names. patch: how a patch is cut. network: in integers. temperature: of the softmax, > 0.
+    smallest_hand: longer side in pixels of the smallest box that is read; a smaller hand is `none`.
+    contour: how the outline is measured, None where the net does not look at it. contour_mean, contour_deviation:
+    float32 (c,), by which the outline's numbers are standardised; empty without.
+    """
+
+    classes: tuple[str, ...]
+    patch: PatchSettings
+    network: IntegerNetwork
+    temperature: float
+    smallest_hand: int
+    contour: ContourSettings | None
+    contour_mean: Float
+    contour_deviation: Float
+
+
+class CnnClassifier:
+    """Patches -> probabilities of classes."""
+
+    def __init__(self, model: CnnModel, backend: Backend = "auto") -> None:
+        """backend: "litert", "numpy", or "auto" for the first that is installed. Raises NetworkError."""
+        self.model = model
+        self._network = Network(model.network, backend)
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Names of the columns of `probabilities`."""
+        return self.model.classes
+
+    def scores(self, patches: NDArray[np.uint8]) -> Float:
+        """Scores of patches, uint8 (n, size, size, 3), BGR -> float32 (n, k)."""
+        model, network = self.model, self._network
+        seen = np.empty(patches.shape, np.int8)
+        for place, patch in enumerate(patches):
+            seen[place] = cv2.LUT(patch, network.table(PATCH, channel_tables(patch)))
+        inputs = {PATCH: seen}
+        if model.contour is not None:
+            numbers = (contour_vectors(patches, model.contour) - model.contour_mean) / model.contour_deviation
+            inputs[CONTOUR] = network.table(CONTOUR, numbers)[:, None, None, :]
+        return network.run(inputs)[SCORES].reshape(len(patches), len(model.classes))
+
+    def probabilities(
+        self, image_bgr: NDArray[np.uint8], boxes: Sequence[Box], sides: Sequence[str]
+    ) -> Float:
+        """Calibrated probabilities, float32 (n, k), rows sum to 1; see `Classifier`."""
+        model = self.model
+        patches = cut_patches(image_bgr, boxes, sides, model.patch)
+        if not len(patches):
+            return np.empty((0, len(model.classes)), np.float32)
+        probabilities = softmax(self.scores(patches), model.temperature)
+        return none_where_small(probabilities, model.classes, boxes, model.smallest_hand)

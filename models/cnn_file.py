@@ -1,0 +1,84 @@
+"""The file of a hand net: its integers (`features.network_file`), how patches are cut, and its temperature."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.contours import ContourSettings, contour_length
+from lightgesture.features.network_file import network_arrays, network_from
+from lightgesture.features.patch import PatchSettings
+from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive
+from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel
+from lightgesture.models.errors import ModelError
+
+KIND: Final = "cnn"
+FORMAT: Final = 1
+"""Version of the file; raised whenever an older reader would misread a newer file."""
+
+NET: Final = "net"
+"""Beginning of the names of the net's arrays."""
+
+
+def write_cnn_model(model: CnnModel, path: Path) -> None:
+    """Write a model file, whole or not at all; raises ModelError if it cannot be written."""
+    header = {
+        "format": FORMAT,
+        "kind": KIND,
+        "classes": list(model.classes),
+        "patch": asdict(model.patch),
+        "contour": None if model.contour is None else asdict(model.contour),
+        "temperature": model.temperature,
+        "smallest_hand": model.smallest_hand,
+    }
+    numbers = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
+    write_archive(path, header, {**network_arrays(NET, model.network), **numbers})
+
+
+def read_cnn_model(path: Path) -> CnnModel:
+    """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
+    return cnn_model_from(path, *read_archive(path))
+
+
+def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CnnModel:
+    """The model of a file's content; raises ModelError naming the file."""
+    check_kind(path, header, KIND, FORMAT)
+    try:
+        contour = header["contour"]
+        model = CnnModel(
+            classes=tuple(str(name) for name in header["classes"]),
+            patch=settings_from(PatchSettings, header["patch"]),
+            network=network_from(arrays, NET),
+            temperature=positive(header, "temperature"),
+            smallest_hand=int(header["smallest_hand"]),
+            contour=None if contour is None else settings_from(ContourSettings, contour),
+            contour_mean=np.asarray(arrays["contour_mean"], np.float32),
+            contour_deviation=np.asarray(arrays["contour_deviation"], np.float32),
+        )
+        _check(model)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ModelError(f"{path}: is damaged ({error}); restore it or train it again") from error
+    return model
+
+
+def _check(model: CnnModel) -> None:
+    """Refuse parts that do not go together. Raises ValueError."""
+    inputs = {PATCH: (model.patch.size, model.patch.size, 3)}
+    length = 0 if model.contour is None else contour_length(model.contour)
+    if length:
+        inputs[CONTOUR] = (1, 1, length)
+    if dict(model.network.inputs) != inputs:
+        raise ValueError(f"the net's inputs are {dict(model.network.inputs)}, must be {inputs}")
+    last = {node.name: node for node in model.network.nodes}.get(SCORES)
+    if model.network.outputs != (SCORES,) or last is None or last.op != "dense":
+        raise ValueError(f"the net's one output must be the dense layer {SCORES}")
+    if last.channels != len(model.classes) or len(set(model.classes)) != len(model.classes):
+        raise ValueError(f"{last.channels} scores for the classes {', '.join(model.classes)}")
+    for name in ("contour_mean", "contour_deviation"):
+        values = getattr(model, name)
+        if values.shape != (length,) or not np.isfinite(values).all():
+            raise ValueError(f"{name} must be {length} finite numbers")
+    if not (model.contour_deviation > 0.0).all():
+        raise ValueError("contour_deviation must be above 0")

@@ -1,0 +1,125 @@
+"""The file of a support vector machine.
+
+Projection and expansion vectors are stored as float16, which halves the file and moves scores by less than 0.01.
+"""
+
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.contours import ContourSettings
+from lightgesture.features.hog import HogSettings
+from lightgesture.features.patch import PatchSettings
+from lightgesture.features.vector import VectorSettings, block_lengths
+from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive
+from lightgesture.models.errors import ModelError
+
+Float = NDArray[np.float32]
+
+KIND: Final = "svm"
+FORMAT: Final = 1
+"""Version of the file; raised whenever an older reader would misread a newer file."""
+
+ARRAYS: Final = {
+    "mean": np.float32,
+    "projection": np.float16,
+    "centres": np.float16,
+    "weights": np.float32,
+    "bias": np.float32,
+}
+"""Arrays of the file and how they are stored."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SvmModel:
+    """All that the machine needs on the board; arrays float32.
+
+    classes: k names. features: how a patch becomes a vector x. mean: (d,). projection: (d, p). centres: (m, p).
+    weights: (m, k). bias: (k,). gamma: of the kernel, > 0. temperature: of the softmax, > 0.
+    smallest_hand: longer side in pixels of the smallest box that is read; a smaller hand is `none`.
+    """
+
+    classes: tuple[str, ...]
+    features: VectorSettings
+    mean: Float
+    projection: Float
+    centres: Float
+    weights: Float
+    bias: Float
+    gamma: float
+    temperature: float
+    smallest_hand: int
+
+
+def write_svm_model(model: SvmModel, path: Path) -> None:
+    """Write a model file, whole or not at all; raises ModelError if it cannot be written."""
+    header = {
+        "format": FORMAT,
+        "kind": KIND,
+        "classes": list(model.classes),
+        "features": asdict(model.features),
+        "gamma": model.gamma,
+        "temperature": model.temperature,
+        "smallest_hand": model.smallest_hand,
+    }
+    write_archive(path, header, {name: getattr(model, name).astype(kind) for name, kind in ARRAYS.items()})
+
+
+def read_svm_model(path: Path) -> SvmModel:
+    """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
+    return svm_model_from(path, *read_archive(path))
+
+
+def svm_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> SvmModel:
+    """The model of a file's content; raises ModelError naming the file."""
+    check_kind(path, header, KIND, FORMAT)
+    try:
+        model = _build(header, arrays)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ModelError(f"{path}: is damaged ({error}); restore it or train it again") from error
+    _check(path, model)
+    return model
+
+
+def _build(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> SvmModel:
+    features = header["features"]
+    names = [field.name for field in fields(VectorSettings)]
+    if not isinstance(features, dict) or sorted(features) != sorted(names):
+        raise ValueError(f"features must be {', '.join(names)}")
+    return SvmModel(
+        classes=tuple(str(name) for name in header["classes"]),
+        features=VectorSettings(
+            patch=settings_from(PatchSettings, features["patch"]),
+            hog=settings_from(HogSettings, features["hog"]),
+            contour=settings_from(ContourSettings, features["contour"]),
+        ),
+        gamma=positive(header, "gamma"),
+        temperature=positive(header, "temperature"),
+        smallest_hand=int(header["smallest_hand"]),
+        **{name: np.asarray(arrays[name], np.float32) for name in ARRAYS},
+    )
+
+
+def _check(path: Path, model: SvmModel) -> None:
+    """Refuse arrays whose shapes do not go together or that hold NaN or infinity."""
+    try:
+        length = sum(block_lengths(model.features))
+    except ValueError as error:
+        raise ModelError(f"{path}: {error}; train it again") from error
+    width, count, classes = model.projection.shape[-1:], model.centres.shape[:1], (len(model.classes),)
+    shapes = {
+        "mean": (length,),
+        "projection": (length, *width),
+        "centres": (*count, *width),
+        "weights": (*count, *classes),
+        "bias": classes,
+    }
+    for name, shape in shapes.items():
+        array: Float = getattr(model, name)
+        if array.shape != shape:
+            raise ModelError(f"{path}: {name} has shape {array.shape}, must be {shape}; train it again")
+        if not np.isfinite(array).all():
+            raise ModelError(f"{path}: {name} holds NaN or infinity; train it again")

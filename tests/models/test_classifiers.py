@@ -1,0 +1,87 @@
+"""What both shipped classifiers promise."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightgesture.models import CLASSES, ModelError, load_classifier
+from lightgesture.models.loading import DEFAULT, SHIPPED, Classifier
+
+Draw = Callable[[str, int], np.ndarray]
+LARGEST = {"cnn": 150_000, "svm": 2_000_000}
+
+
+@pytest.fixture(scope="module", params=["svm"])
+def name(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture(scope="module")
+def classifier(name: str) -> Classifier:
+    return load_classifier(name)
+
+
+def test_the_shipped_model_knows_all_classes_and_is_small(name: str, classifier: Classifier) -> None:
+    assert classifier.classes == CLASSES
+    assert SHIPPED[name].stat().st_size <= LARGEST[name]
+    assert SHIPPED[name].with_suffix(".json").is_file()
+
+
+def test_a_path_does_what_a_name_does(name: str, classifier: Classifier, draw: Draw) -> None:
+    box = [(5, 5, 50, 50)]
+    by_path = load_classifier(SHIPPED[name]).probabilities(draw("1", 0), box, ["left"])
+    np.testing.assert_array_equal(by_path, classifier.probabilities(draw("1", 0), box, ["left"]))
+
+
+def test_a_mirrored_hand_of_the_other_side_reads_the_same(classifier: Classifier, draw: Draw) -> None:
+    picture = draw("1", 0)
+    left = classifier.probabilities(picture, [(10, 5, 30, 50)], ["left"])
+    mirrored = np.ascontiguousarray(picture[:, ::-1])
+    right = classifier.probabilities(mirrored, [(60 - 40, 5, 30, 50)], ["right"])
+    np.testing.assert_allclose(left, right, atol=1e-5)
+
+
+def test_rows_are_distributions_in_the_order_of_the_boxes(classifier: Classifier, draw: Draw) -> None:
+    picture = np.concatenate([draw("1", 1), draw("5", 2)], axis=1)
+    boxes = [(5, 5, 50, 50), (65, 5, 50, 50)]
+    both = classifier.probabilities(picture, boxes, ["right", "left"])
+    assert both.shape == (2, 11)
+    assert both.dtype == np.float32
+    np.testing.assert_allclose(both.sum(axis=1), 1.0, atol=1e-5)
+    second = classifier.probabilities(picture, boxes[1:], ["left"])
+    np.testing.assert_allclose(both[1:], second, atol=1e-5)
+    assert classifier.probabilities(picture, [], []).shape == (0, 11)
+
+
+def test_a_hand_too_small_to_be_read_is_none(classifier: Classifier, draw: Draw) -> None:
+    probabilities = classifier.probabilities(draw("5", 0), [(20, 20, 8, 8)], ["left"])
+    assert probabilities[0, CLASSES.index("none")] == 1.0
+
+
+def test_grey_pictures_are_read(classifier: Classifier, draw: Draw) -> None:
+    grey = draw("5", 0)[..., 0]
+    assert classifier.probabilities(grey, [(5, 5, 50, 50)], ["left"]).shape == (1, 11)
+
+
+def test_a_flat_picture_gives_finite_probabilities(classifier: Classifier) -> None:
+    for level in (0, 128, 255):
+        flat = np.full((60, 60, 3), level, np.uint8)
+        assert np.isfinite(classifier.probabilities(flat, [(5, 5, 50, 50)], ["left"])).all()
+
+
+def test_boxes_outside_the_picture_are_refused(classifier: Classifier, draw: Draw) -> None:
+    with pytest.raises(ValueError, match="outside"):
+        classifier.probabilities(draw("5", 0), [(90, 5, 50, 50)], ["left"])
+
+
+def test_without_a_name_it_is_the_default(draw: Draw) -> None:
+    arguments = draw("5", 0), [(5, 5, 50, 50)], ["left"]
+    expected = load_classifier(DEFAULT).probabilities(*arguments)
+    np.testing.assert_array_equal(load_classifier().probabilities(*arguments), expected)
+
+
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="no such thing"):
+        load_classifier(tmp_path / "no such thing.npz")

@@ -1,0 +1,78 @@
+"""`train cnn`: folders of pictures become a net and its card, the same for the same seed."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lightgesture.cli import main
+from lightgesture.models import load_classifier
+from lightgesture.sources import read_picture
+
+pytest.importorskip("torch")
+QUICK = ("--copies", "4", "--synthetic", "0", "--steps", "60", "--size", "small")
+
+
+def train(folder: Path, out: Path, *more: str) -> int:
+    return main(["train", "cnn", "--data", str(folder), "--out", str(out), *QUICK, *more])
+
+
+@pytest.mark.parametrize("more", [(), ("--outline", "--no-teacher")], ids=["taught", "outline"])
+def test_folders_become_a_model_and_its_card(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], more: tuple[str, ...]
+) -> None:
+    assert train(folder, tmp_path / "mine.npz", *more) == 0
+    classifier = load_classifier(tmp_path / "mine.npz")
+    assert classifier.classes == ("1", "5", "none")
+    right = 0
+    for token in ("1", "5"):
+        for index in range(12):
+            picture = read_picture(folder / token / f"{index}.png")
+            row = classifier.probabilities(picture, [(0, 0, 60, 60)], ["left"])[0]
+            right += classifier.classes[int(row[:2].argmax())] == token
+    assert right >= 20
+    card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
+    assert card["data"]["per_class"] == {"1": 12, "5": 12, "none": 12}
+    assert card["model"]["looks_at_the_outline"] == bool(more)
+    assert len(card["operating_points"]) > 3
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "wrote" in captured.err
+
+
+def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
+    for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
+        more = ("--seed", seed, "--quiet", "--no-teacher")
+        assert train(folder, tmp_path / f"{name}.npz", *more) == 0
+    arrays = {}
+    for name in "abc":
+        with np.load(tmp_path / f"{name}.npz") as file:
+            arrays[name] = dict(file)
+    assert all((arrays["a"][key] == arrays["b"][key]).all() for key in arrays["a"])
+    assert any((arrays["a"][key] != arrays["c"][key]).any() for key in arrays["a"] if key.endswith("weights"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (["--data", "nowhere.csv"], 1, "nowhere.csv: cannot be read"),
+        (["--data", "{folder}", "--out", "model.pickle"], 2, "ends in .npz"),
+        (["--data", "{folder}", "--steps", "0"], 2, "--steps"),
+        ([], 2, "--data"),
+    ],
+)
+def test_wrong_use_is_one_line(
+    folder: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: list[str],
+    status: int,
+    words: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["train", "cnn", *(text.format(folder=folder) for text in arguments)]) == status
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1

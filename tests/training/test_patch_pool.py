@@ -1,0 +1,73 @@
+"""The pool of altered patches: what is in it, and that neither processes nor reruns change it."""
+
+import numpy as np
+import pytest
+
+from lightgesture.features.patch import PatchSettings
+from lightgesture.features.standardise import channel_tables
+from lightgesture.training.hand_samples import HandSamples, HandSampling, standardised
+from lightgesture.training.negatives import Scene
+from lightgesture.training.patch_pool import Originals, PoolSettings, make_pool
+from lightgesture.training.samples import LabelledHand
+
+SETTINGS = PoolSettings(copies=2, rounds=1, rendered=6, patch=PatchSettings(16, 1.1))
+
+
+def picture(seed, size=80):
+    return np.random.default_rng(seed).integers(0, 256, (size, size, 3)).astype(np.uint8)
+
+
+@pytest.fixture(scope="module")
+def originals():
+    hands = [
+        LabelledHand(picture(number), (20, 20, 40, 40), "left", token, f"person {number % 3}", None)
+        for number, token in enumerate(["left", "right", "5", "none"] * 3)
+    ]
+    return Originals(hands, [Scene(picture(90, 160), (), (), "water")])
+
+
+def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
+    pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
+    assert pool.patches.shape[1:] == (20, 20, 3)
+    assert len(pool.patches) == len(pool.contours) == len(pool.tokens) == len(pool.sources) == len(pool.hands)
+    assert (np.bincount(pool.hands[pool.hands >= 0]) == 2).all()
+    for row, number in enumerate(pool.hands):
+        if number >= 0:
+            hand = originals.hands[number]
+            assert pool.sources[row] == hand.source
+            turned = {"left": {"left", "right"}, "right": {"left", "right"}}.get(hand.token, {hand.token})
+            assert pool.tokens[row] in turned
+    assert set(pool.tokens[pool.sources == "water"]) == {"none"}
+    assert any(source.startswith("synthetic") for source in pool.sources)
+
+
+def test_processes_and_reruns_change_nothing(originals, tmp_path):
+    alone = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", lambda *_: None)
+    shared = make_pool(originals, SETTINGS, 3, 2, tmp_path / "b", lambda *_: None)
+    again = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", pytest.fail)
+    other = make_pool(originals, SETTINGS, 4, 1, tmp_path / "c", lambda *_: None)
+    for pool in (shared, again):
+        np.testing.assert_array_equal(alone.patches, pool.patches)
+        np.testing.assert_array_equal(alone.contours, pool.contours)
+        assert (alone.tokens == pool.tokens).all()
+    assert len(other.patches) != len(alone.patches) or (other.patches != alone.patches).any()
+
+
+def test_many_patches_are_standardised_as_the_board_does_one():
+    patches = np.stack([picture(seed, 16) // (seed + 1) for seed in range(5)])
+    for patch, values in zip(patches, standardised(patches), strict=True):
+        tables = channel_tables(patch)[0]
+        expected = np.stack([tables[patch[..., c], c] for c in range(3)], axis=-1)
+        np.testing.assert_allclose(values, expected, atol=2e-4)
+
+
+def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path):
+    pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
+    chosen = pool.tokens == "5"
+    samples = HandSamples(pool, chosen, ("5",), SETTINGS.margin, HandSampling(erased=0.5))
+    batch = samples.draw(np.random.default_rng(1), 300)
+    assert batch.patches.shape == (300, 16, 16, 3)
+    assert np.abs(batch.patches).max() <= 4.5
+    assert set(batch.truth.tolist()) == {0}
+    same = samples.draw(np.random.default_rng(1), 300)
+    np.testing.assert_array_equal(batch.patches, same.patches)

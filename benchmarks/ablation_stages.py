@@ -17,8 +17,8 @@ from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.bank import bank_distances, hand_proximity
 from lightgesture.features.classical import describe_regions, scored_candidates
 from lightgesture.features.colour import ColourMap, ColourStage
-from lightgesture.features.geometry import pairwise_iou, scale_box
-from lightgesture.features.learned import HAND_IOU, NO_OUTLINE, Places, distinct, region
+from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
+from lightgesture.features.learned import HAND_IOU, NO_OUTLINE, Places, region
 from lightgesture.features.pairs import score_pairs
 from lightgesture.features.peaks import logistic
 from lightgesture.features.proposals import Proposals, ProposalSettings, propose
@@ -178,7 +178,7 @@ class LearnedSearch:
         boxes, scores = peaks.boxes, peaks.heat
         if self.refines:
             boxes, scores = refined.boxes, np.float32(HAND_IOU) * logistic(refined.hand)
-        kept = distinct(boxes, scores, self.settings)
+        kept = best_distinct(boxes, scores, self.settings)
         found = tuple(region(colour, boxes[index], float(scores[index])) for index in kept)
         return Candidates(found, lower_of_both(found, self.settings), colour.source_size)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lightgesture.features import cells
 from lightgesture.features.bank import OTHER, Bank, bank_distances, hand_proximity
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.geometry import pairwise_iou, scale_box
+from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
 from lightgesture.features.pairs import Candidate, score_pairs
 from lightgesture.features.proposals import Proposals, propose
 from lightgesture.features.selector_file import BANK_NUMBERS, ClassicalParts
@@ -53,25 +53,11 @@ def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float)
     )
 
 
-def _best(proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings) -> list[int]:
-    """Proposals of the highest scores that do not overlap a better one."""
-    overlap = pairwise_iou(proposals.boxes, proposals.boxes)
-    kept: list[int] = []
-    for index in np.argsort(-scores, kind="stable"):
-        if scores[index] < settings.least_score:
-            break
-        if all(overlap[index, other] < settings.distinct_iou for other in kept):
-            kept.append(int(index))
-            if len(kept) == settings.candidates:
-                break
-    return kept
-
-
 def scored_candidates(
     colour: ColourMap, proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings
 ) -> tuple[list[int], list[Candidate]]:
     """Numbers of the proposals that go on to pairing, and what their pairs need."""
-    kept = _best(proposals, scores, settings)
+    kept = best_distinct(proposals.boxes, scores, settings)
     return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
 
 

@@ -1,11 +1,12 @@
 """Arithmetic on boxes; boxes are float or int arrays (n, 4) of x, y, width, height."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.selector_settings import SelectorSettings
 from lightgesture.features.types import Box
 
 
@@ -18,6 +19,30 @@ def pairwise_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float6
     overlap = np.clip(high - low, 0.0, None).prod(axis=-1)
     union = a[..., 2:].prod(axis=-1) + b[..., 2:].prod(axis=-1) - overlap
     return overlap / np.maximum(union, 1e-9)  # type: ignore[no-any-return]
+
+
+def keep_distinct(same: NDArray[np.bool_], order: Iterable[int], most: int) -> list[int]:
+    """Greedy choice: the first `most` numbers of `order` that are not the same as one kept before.
+
+    same: bool (n, n), symmetric, which two boxes stand for one thing. order: numbers below n, the best first.
+    """
+    kept: list[int] = []
+    dropped = np.zeros(len(same), bool)
+    for index in order:
+        if len(kept) == most:
+            break
+        if not dropped[index]:
+            kept.append(int(index))
+            dropped |= same[index]
+    return kept
+
+
+def best_distinct(boxes: NDArray[Any], scores: NDArray[np.float32], settings: SelectorSettings) -> list[int]:
+    """Numbers of the boxes of the highest scores that do not overlap a better one, the best first."""
+    order = np.argsort(-scores, kind="stable")
+    order = order[scores[order] >= settings.least_score]
+    same = pairwise_iou(boxes, boxes) >= settings.distinct_iou
+    return keep_distinct(same, order, settings.candidates)
 
 
 def scale_box(box: Sequence[float], scale: tuple[float, float], size: tuple[int, int]) -> Box:

@@ -7,7 +7,7 @@ import numpy as np
 
 from lightgesture.features.choice import Refined, describe_places
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.geometry import pairwise_iou, scale_box
+from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
 from lightgesture.features.locator import Locator
 from lightgesture.features.network import IntegerNetwork
 from lightgesture.features.pairs import Candidate, score_pairs
@@ -80,7 +80,7 @@ class LearnedSelector:
         predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
         refined = self._nets.look_at(colour, predicted)
         scores = np.float32(HAND_IOU) * logistic(refined.hand)
-        kept = distinct(refined.boxes, scores, self._settings)
+        kept = best_distinct(refined.boxes, scores, self._settings)
         own = refined.boxes[kept]
         apart = pairwise_iou(own, own) <= self._settings.apart_iou
         together = np.where(apart, np.minimum.outer(scores[kept], scores[kept]), 0.0).astype(np.float32)
@@ -99,20 +99,8 @@ def candidates_of(
             float(peaks.heat[index]),
             mean_colour(colour, refined.boxes[index]),
         )
-        for index in distinct(refined.boxes, scores, settings)
+        for index in best_distinct(refined.boxes, scores, settings)
     ]
-
-
-def distinct(boxes: Float, scores: Float, settings: SelectorSettings) -> list[int]:
-    """Places of the highest scores whose boxes do not overlap a better one."""
-    overlap = pairwise_iou(boxes, boxes)
-    kept: list[int] = []
-    for index in np.argsort(-scores, kind="stable"):
-        if scores[index] < settings.least_score:
-            break
-        if all(overlap[index, other] < settings.distinct_iou for other in kept):
-            kept.append(int(index))
-    return kept[: settings.candidates]
 
 
 def scaled_point(point: tuple[float, float], scale: tuple[float, float]) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
 
 Float = NDArray[np.float32]
 
@@ -70,13 +70,8 @@ def find_peaks(maps: Float, settings: PeakSettings | None = None) -> Peaks:
     rows, columns = _maxima(maps[HAND], least)
     rows, columns = rows[: settings.most_maxima], columns[: settings.most_maxima]
     boxes = boxes_at(maps, rows, columns)
-    overlap = pairwise_iou(boxes, boxes)
-    kept: list[int] = []
-    for index in range(len(boxes)):
-        if all(overlap[index, other] < settings.same_iou for other in kept):
-            kept.append(index)
-            if len(kept) == settings.most:
-                break
+    same = pairwise_iou(boxes, boxes) >= settings.same_iou
+    kept = keep_distinct(same, range(len(boxes)), settings.most)
     heat = logistic(maps[HAND, rows, columns])
     return Peaks(boxes[kept], heat[kept], _face(maps[FACE], settings))
 

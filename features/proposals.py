@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.types import Box, Image
 from lightgesture.features.wrist import WristSettings, cut_forearm
 
@@ -83,17 +83,11 @@ def _regions_at(skin: Image, threshold: int, settings: ProposalSettings) -> list
     return regions
 
 
-def _distinct(regions: list[_Region], same_iou: float) -> list[_Region]:
-    """Keep the first of each group of regions whose boxes nearly agree."""
+def _distinct(regions: list[_Region], settings: ProposalSettings) -> list[_Region]:
+    """Keep the first of each group of regions whose boxes nearly agree, as many as are wanted."""
     boxes = np.array([region.box for region in regions], np.int32).reshape(-1, 4)
-    same = pairwise_iou(boxes, boxes) > same_iou
-    kept: list[int] = []
-    dropped = np.zeros(len(regions), bool)
-    for index in range(len(regions)):
-        if not dropped[index]:
-            kept.append(index)
-            dropped |= same[index]
-    return [regions[index] for index in kept]
+    same = pairwise_iou(boxes, boxes) > settings.same_iou
+    return [regions[index] for index in keep_distinct(same, range(len(regions)), settings.most)]
 
 
 def propose(
@@ -110,14 +104,14 @@ def propose(
         # The reddest regions come first, so specks at the low levels are what a flood loses.
         if len(found) >= 4 * settings.most:
             break
-    whole = _distinct(found, settings.same_iou)[: settings.most]
+    whole = _distinct(found, settings)
     hands = []
     for region in whole:
         contour = cut_forearm(region.contour, region.box, wrist)
         if contour is not None:
             x, y, width, height = cv2.boundingRect(contour)
             hands.append(_Region((x, y, width, height), contour, region.level, cut=True))
-    regions = _distinct(whole + hands, settings.same_iou)[: settings.most]
+    regions = _distinct(whole + hands, settings)
     return Proposals(
         boxes=np.array([region.box for region in regions], np.int32).reshape(-1, 4),
         contours=tuple(region.contour for region in regions),

@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.pairs import FAR
 from lightgesture.features.peaks import Peaks
 
 Float = NDArray[np.float32]
 
 COLUMNS = 14
 """Numbers of one place."""
-FAR = 9.0
-"""Stands for the distance of a face where none is seen, in hand sizes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,12 +6,12 @@ belongs to the tentative tracks.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from lightgesture.features.association import Match, assign, assign_nearest, gated
+from lightgesture.features.association import Innovation, Match, assign, assign_nearest, gated
 from lightgesture.features.motion import Measured, measure, meets
 from lightgesture.features.selector_settings import SelectorSettings
 from lightgesture.features.track_settings import TrackSettings
@@ -107,10 +107,11 @@ def match_tracks(
         found |= _match_leaps(tracks, missing, found, observed, held, settings)
     missing = [place for place in numbered if place not in found]
     if missing:
-        found |= _match_believed(tracks, missing, found, observed, settings, selection)
+        found |= _match_alone(tracks, missing, found, observed, selection.single_score, settings, leap=True)
     tentative = [place for place, track in enumerate(tracks) if track.life == "tentative"]
     if tentative:
-        found |= _match_tentative(tracks, tentative, found, observed, settings, selection)
+        least = selection.single_score * settings.keep_share
+        found |= _match_alone(tracks, tentative, found, observed, least, settings, leap=False)
     return found
 
 
@@ -180,58 +181,41 @@ def _match_leaps(
         if not taken <= ends or pair.score < held - settings.margin:
             continue
         regions = {index: observed.regions[index] for index in ends - taken}
-        rows = [gated(item, regions, settings.gate) for item in expected]
-        assigned = assign_nearest(
-            (match.squared, row, index)
-            for row, matches in enumerate(rows)
-            for index, match in matches.items()
-        )
-        if len(assigned) == len(missing):
-            return {
-                missing[row]: Found(index, rows[row][index].measured, leap=True)
-                for row, index in assigned.items()
-            }
+        leaps = _match_nearest(missing, expected, regions, settings.gate, leap=True)
+        if len(leaps) == len(missing):
+            return leaps
     return {}
 
 
-def _match_believed(
+def _match_alone(
     tracks: Sequence[TrackState],
-    missing: Sequence[int],
+    places: Sequence[int],
     found: dict[int, Found],
     observed: Observed,
+    least: float,
     settings: TrackSettings,
-    selection: SelectorSettings,
+    *,
+    leap: bool,
 ) -> dict[int, Found]:
-    """Leaps of the missing tracks to regions that are believed on their own, the nearest first."""
+    """The tracks at `places` and the regions that no other found and whose confidence is at least `least`."""
     taken = {item.region for item in found.values()}
-    believed = observed.credible(selection.single_score)
-    free = {index: region for index, region in believed.items() if index not in taken}
-    rows = [
-        gated(innovation(tracks[place].motion, settings, leap=True), free, settings.gate) for place in missing
-    ]
+    free = {index: region for index, region in observed.credible(least).items() if index not in taken}
+    expected = [innovation(tracks[place].motion, settings, leap=leap) for place in places]
+    return _match_nearest(places, expected, free, settings.gate, leap=leap)
+
+
+def _match_nearest(
+    places: Sequence[int],
+    expected: Sequence[Innovation],
+    regions: Mapping[int, HandRegion],
+    gate: float,
+    *,
+    leap: bool,
+) -> dict[int, Found]:
+    """The tracks at `places`, each expected where `expected` says, and the regions in their gates, the nearest two
+    first."""
+    rows = [gated(item, regions, gate) for item in expected]
     assigned = assign_nearest(
         (match.squared, row, index) for row, matches in enumerate(rows) for index, match in matches.items()
     )
-    return {
-        missing[row]: Found(index, rows[row][index].measured, leap=True) for row, index in assigned.items()
-    }
-
-
-def _match_tentative(
-    tracks: Sequence[TrackState],
-    tentative: Sequence[int],
-    found: dict[int, Found],
-    observed: Observed,
-    settings: TrackSettings,
-    selection: SelectorSettings,
-) -> dict[int, Found]:
-    taken = {item.region for item in found.values()}
-    credible = observed.credible(selection.single_score * settings.keep_share)
-    free = {index: region for index, region in credible.items() if index not in taken}
-    rows = [gated(innovation(tracks[place].motion, settings), free, settings.gate) for place in tentative]
-    assigned = assign_nearest(
-        (match.squared, row, index) for row, matches in enumerate(rows) for index, match in matches.items()
-    )
-    return {
-        tentative[row]: Found(index, rows[row][index].measured, leap=False) for row, index in assigned.items()
-    }
+    return {places[row]: Found(index, rows[row][index].measured, leap) for row, index in assigned.items()}

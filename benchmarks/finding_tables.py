@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from lightgesture.benchmarks.region_tables import seen_word
+from lightgesture.benchmarks.region_tables import FOUND_COLUMNS, RUN_COLUMNS, false_counts, found_row, run_row
 from lightgesture.benchmarks.regions import MAX_BOXES, SINGLE, Answer, Run
 from lightgesture.benchmarks.scorer import is_token, matched_readings, percentile, share
 from lightgesture.benchmarks.tables import Cell, Table
@@ -27,31 +27,13 @@ def finding_tables(positives: Sequence[Run], negatives: Sequence[Run]) -> list[T
 
 def found_table(runs: Sequence[Run]) -> Table:
     """One row per method, group and mode."""
-    columns = (
-        *("method", "group", "seen", "mode", "frames", "hands", "found", "found_share"),
-        *("mean_iou", "median_iou", "sides", "side_share", "extra"),
-    )
+    columns = (*FOUND_COLUMNS, "median_iou", "sides", "side_share", "extra")
     return Table("found", "Hands found in whole frames", columns, tuple(map(_found_row, runs)), NOTE)
 
 
 def _found_row(run: Run) -> dict[str, Cell]:
-    score = run.score
     found = overlaps(run.answers)
-    return {
-        "method": run.method,
-        "group": run.group,
-        "seen": seen_word(run),
-        "mode": run.mode,
-        "frames": score.frames,
-        "hands": score.hands,
-        "found": score.found,
-        "found_share": share(score.found, score.hands),
-        "mean_iou": score.mean_iou,
-        "median_iou": percentile(found, 50) if found else None,
-        "sides": score.sides,
-        "side_share": share(score.sides_right, score.sides),
-        "extra": score.extra,
-    }
+    return {**found_row(run), "median_iou": percentile(found, 50) if found else None}
 
 
 def overlaps(answers: Iterable[Answer]) -> list[float]:
@@ -105,23 +87,10 @@ def found_by_token_table(runs: Sequence[Run]) -> Table:
 
 def false_hands_table(runs: Sequence[Run]) -> Table:
     """Frames without a gesturing diver in which a pair, or any hand, was found; single pictures are summed up."""
-    rows = [_false_row(run) for run in runs]
+    rows = [{**run_row(run), **false_counts(run.answers)} for run in runs]
     for method in dict.fromkeys(run.method for run in runs):
         answers = [a for run in runs if (run.method, run.mode) == (method, SINGLE) for a in run.answers]
-        rows.append({"method": method, "group": "all", "mode": SINGLE, **_false_counts(answers)})
-    columns = ("method", "group", "seen", "mode", "frames", "pair", "any_hand")
+        rows.append({"method": method, "group": "all", "mode": SINGLE, **false_counts(answers)})
+    columns = (*RUN_COLUMNS, "frames", "pair", "any_hand")
     title = "Frames without a gesturing diver in which hands were found"
     return Table("false_hands", title, columns, tuple(rows))
-
-
-def _false_row(run: Run) -> dict[str, Cell]:
-    named = {"method": run.method, "group": run.group, "seen": seen_word(run), "mode": run.mode}
-    return {**named, **_false_counts(run.answers)}
-
-
-def _false_counts(answers: Sequence[Answer]) -> dict[str, Cell]:
-    return {
-        "frames": len(answers),
-        "pair": sum(len(answer.readings) == MAX_BOXES for answer in answers),
-        "any_hand": sum(bool(answer.readings) for answer in answers),
-    }

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from lightgesture.benchmarks.regions import MAX_BOXES, SCRIPTS, SINGLE, Run
+from lightgesture.benchmarks.regions import MAX_BOXES, SCRIPTS, SINGLE, Answer, Run
 from lightgesture.benchmarks.scorer import is_token, matched_readings, share
 from lightgesture.benchmarks.tables import Cell, Table
 
@@ -23,21 +23,46 @@ def seen_word(run: Run) -> str:
     return SEEN.get(run.group, "no") if run.seen is None else run.seen
 
 
+RUN_COLUMNS = ("method", "group", "seen", "mode")
+"""What every row says of its run."""
+FOUND_COLUMNS = (*RUN_COLUMNS, "frames", "hands", "found", "found_share", "mean_iou")
+"""Begin every table of hands in frames that show some."""
+
+
+def run_row(run: Run) -> dict[str, Cell]:
+    """The cells of RUN_COLUMNS."""
+    return {"method": run.method, "group": run.group, "seen": seen_word(run), "mode": run.mode}
+
+
+def found_row(run: Run) -> dict[str, Cell]:
+    """The cells of FOUND_COLUMNS, and of what else a table of found hands may tell: sides and boxes on no hand."""
+    score = run.score
+    return {
+        **run_row(run),
+        "frames": score.frames,
+        "hands": score.hands,
+        "found": score.found,
+        "found_share": share(score.found, score.hands),
+        "mean_iou": score.mean_iou,
+        "sides": score.sides,
+        "side_share": share(score.sides_right, score.sides),
+        "extra": score.extra,
+    }
+
+
+def false_counts(answers: Sequence[Answer]) -> dict[str, Cell]:
+    """Frames without a hand, and those of them in which any hand, or a pair, was found."""
+    return {
+        "frames": len(answers),
+        "any_hand": sum(bool(answer.readings) for answer in answers),
+        "pair": sum(len(answer.readings) == MAX_BOXES for answer in answers),
+    }
+
+
 def regions_table(runs: Sequence[Run]) -> Table:
     """Hands found, tokens, sides and pairs of every run."""
     columns = (
-        *(
-            "method",
-            "group",
-            "seen",
-            "mode",
-            "frames",
-            "hands",
-            "found",
-            "found_share",
-            "mean_iou",
-            "side_share",
-        ),
+        *(*FOUND_COLUMNS, "side_share"),
         *("tokens", "read", "read_share", "wrong", "pairs", "both", "both_share", "extra"),
     )
     note = (
@@ -54,16 +79,7 @@ def regions_table(runs: Sequence[Run]) -> Table:
 def _region_row(run: Run) -> dict[str, Cell]:
     score = run.score
     return {
-        "method": run.method,
-        "group": run.group,
-        "seen": seen_word(run),
-        "mode": run.mode,
-        "frames": score.frames,
-        "hands": score.hands,
-        "found": score.found,
-        "found_share": share(score.found, score.hands),
-        "mean_iou": score.mean_iou,
-        "side_share": share(score.sides_right, score.sides),
+        **found_row(run),
         "tokens": score.tokens,
         "read": score.read,
         "read_share": share(score.read, score.tokens),
@@ -71,7 +87,6 @@ def _region_row(run: Run) -> dict[str, Cell]:
         "pairs": score.pairs,
         "both": score.both,
         "both_share": share(score.both, score.pairs),
-        "extra": score.extra,
     }
 
 
@@ -134,13 +149,8 @@ def negatives_table(runs: Sequence[Run]) -> Table:
     """Frames without a gesturing diver in which something was found; words and instructions must be 0."""
     rows: list[dict[str, Cell]] = [
         {
-            "method": run.method,
-            "group": run.group,
-            "seen": seen_word(run),
-            "mode": run.mode,
-            "frames": len(run.answers),
-            "any_hand": sum(bool(answer.readings) for answer in run.answers),
-            "pair": sum(len(answer.readings) == MAX_BOXES for answer in run.answers),
+            **run_row(run),
+            **false_counts(run.answers),
             "any_token": sum(
                 any(reading.token is not None for reading in answer.readings) for answer in run.answers
             ),
@@ -150,7 +160,7 @@ def negatives_table(runs: Sequence[Run]) -> Table:
         for run in runs
     ]
     columns = (
-        *("method", "group", "seen", "mode", "frames"),
+        *(*RUN_COLUMNS, "frames"),
         *("any_hand", "pair", "any_token", "words", "instructions"),
     )
     title = "Frames without a gesturing diver: nothing may be found"

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-import lightgesture.synth
-from lightgesture.benchmarks.suite_cache import Take, source_digest
+from lightgesture.benchmarks.suite_cache import Take
 from lightgesture.benchmarks.suite_scenarios import ALONE, FIRST_SEED, PROFILE, Scenario, scene_spec
+from lightgesture.benchmarks.synthetic_takes import SyntheticTake, drawing_digest
 from lightgesture.synth.hand import decode, encode
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.scene import Scene, SceneFrame
@@ -83,13 +83,9 @@ class Glare:
 
 
 @dataclass(frozen=True, slots=True)
-class ExcerptTake:
+class ExcerptTake(SyntheticTake):
     """An excerpt of a scenario of the synthetic diver, shown from time 0 on."""
 
-    scenario: Scenario
-    fps: float
-    size: tuple[int, int]
-    recipe: str
     excerpt: Excerpt
 
     def frames(self) -> Iterator[SceneFrame]:
@@ -124,8 +120,6 @@ def _scenarios() -> list[Scenario]:
 
 
 def _take(scenario: Scenario, excerpt: Excerpt) -> Take:
-    package = Path(lightgesture.synth.__file__).parent
-    digest = source_digest([*package.glob("*.py"), Path(__file__)])
     spec = scene_spec(scenario)
-    recipe = f"{digest} {excerpt} {spec.model_dump_json()}"
+    recipe = f"{drawing_digest(Path(__file__))} {excerpt} {spec.model_dump_json()}"
     return ExcerptTake(scenario, spec.fps, spec.size, recipe, excerpt)

@@ -3,16 +3,15 @@
 `lightgesture evaluate suite` is the thin command in front of this module.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import lightgesture.synth
 from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
 from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.regions import MAX_BOXES
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_cache import CacheSettings, Clip, Take, fetch_clips, source_digest
+from lightgesture.benchmarks.suite_cache import CacheSettings, Clip, Take, fetch_clips
 from lightgesture.benchmarks.suite_real import real_takes
 from lightgesture.benchmarks.suite_scenarios import (
     FPS,
@@ -32,9 +31,9 @@ from lightgesture.benchmarks.suite_scoring import (
     score_hands,
     score_instructions,
 )
+from lightgesture.benchmarks.synthetic_takes import SyntheticTake, drawing_digest
 from lightgesture.datasets import Label
 from lightgesture.sources import open_source
-from lightgesture.synth.scene import Scene, SceneFrame
 from lightgesture.synth.script import sentence_words
 
 Progress = Callable[[Iterable[Take], str], Iterable[Take]]
@@ -45,20 +44,6 @@ QUICK_STEP = 5
 
 DWELL_S = (CacheSettings().hold - 1) / FPS
 """From the first frame of a sign to the one in which a flawless reader accepts it."""
-
-
-@dataclass(frozen=True, slots=True)
-class SyntheticTake:
-    """A scenario of the synthetic diver."""
-
-    scenario: Scenario
-    fps: float
-    size: tuple[int, int]
-    recipe: str
-
-    def frames(self) -> Iterator[SceneFrame]:
-        """Pictures with their truth."""
-        return Scene(scene_spec(self.scenario)).frames()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,8 +66,7 @@ def takes_of(suite: str, data: Path | None) -> list[Take]:
 
 def synthetic_takes(suite: str) -> list[Take]:
     """The clips of a suite that the synthetic diver plays."""
-    package = Path(lightgesture.synth.__file__).parent
-    digest = source_digest(package.glob("*.py"))
+    digest = drawing_digest()
     takes: list[Take] = []
     for scenario in scenarios(suite):
         spec = scene_spec(scenario)

@@ -23,7 +23,6 @@ from lightgesture.features.network_nodes import (
 )
 
 __all__ = [
-    "WEIGHTED",
     "IntegerNetwork",
     "NetworkError",
     "Node",
@@ -34,7 +33,6 @@ __all__ = [
     "infer_shapes",
     "quantise",
     "same_padding",
-    "weight_shape",
 ]
 
 LARGEST_WEIGHT = 127

@@ -68,11 +68,6 @@ def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | Non
     return (int(first), int(second)), float(pairs[first, second])
 
 
-def side_in_picture(box: Box, width: int) -> Side:
-    """The side of a hand by its half of an unmirrored picture, `width` pixels wide."""
-    return side_of_axis(box, width / 2)
-
-
 def side_of_axis(box: Box, axis: float) -> Side:
     """The side of a hand by where it is of the body's axis, x in pixels of an unmirrored picture."""
     return "right" if box[0] + box[2] / 2 < axis else "left"

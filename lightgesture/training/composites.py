@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image
 from lightgesture.training.cutouts import Cutout
+from lightgesture.training.decoys import lamp_spots, put_decoys, put_structures
 
 Float = NDArray[np.float32]
 
@@ -92,25 +93,6 @@ def _inside(value: float, size: int, margin: float) -> float:
     return min(max(value, margin), max(size - margin, margin))
 
 
-def _paint(rng: np.random.Generator) -> tuple[float, float, float]:
-    """Red, orange, yellow, black, white or grey, BGR, 0 to 1."""
-    colours = ((0.1, 0.12, 0.75), (0.1, 0.4, 0.85), (0.1, 0.75, 0.85), (0.05,) * 3, (0.85,) * 3, (0.4,) * 3)
-    shade = rng.uniform(0.6, 1.15)
-    blue, green, red = (min(value * shade, 1.0) for value in colours[rng.integers(len(colours))])
-    return blue, green, red
-
-
-def lamp_spots(shape: tuple[int, int], rng: np.random.Generator) -> Float:
-    """float32 (h, w), from 1: how much brighter one or two lit places are, tables under lamps and the like."""
-    height, width = shape
-    gain = np.ones((height, width), np.float32)
-    for _ in range(rng.integers(1, 3)):
-        centre = round(rng.uniform(0, width)), round(rng.uniform(0.2, 1.0) * height)
-        axes = round(width * rng.uniform(0.04, 0.2)), round(height * rng.uniform(0.04, 0.2))
-        cv2.ellipse(gain, centre, axes, rng.uniform(-20, 20), 0, 360, rng.uniform(3.0, 15.0), cv2.FILLED)
-    return np.asarray(cv2.GaussianBlur(gain, (0, 0), rng.uniform(1.0, 8.0)), np.float32)
-
-
 def attenuate(image: Float, rng: np.random.Generator) -> Float:
     """Attenuation by colour and a veil of scattered light, with the terms of Akkaynak and Treibitz, "A revised
     underwater image formation model", 2018: I = J exp(-beta_D z) + B (1 - exp(-beta_B z))."""
@@ -170,67 +152,13 @@ class Composer:
             part = part[:, ::-1]
         return np.asarray(part, np.float32) / np.float32(255.0)
 
-    def _put_decoys(self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]) -> None:
-        """Objects about as large as hands: pieces of other pictures with a hard edge and a colour of their own."""
-        width, height = self._settings.size
-        count = rng.integers(1, self._settings.decoys + 1) if rng.random() < 0.5 else 0
-        for _ in range(count):
-            texture = self._background(self._rooms, rng, sources)
-            radius = unit * rng.uniform(0.2, 0.8)
-            centre = rng.uniform(0, width), rng.uniform(0, height)
-            angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 12)))
-            reach = radius * rng.uniform(0.5, 1.3, len(angles))
-            outline = np.stack(
-                [centre[0] + reach * np.cos(angles), centre[1] + reach * np.sin(angles)], axis=1
-            )
-            mask = np.zeros((height, width), np.float32)
-            cv2.fillPoly(mask, [np.rint(outline).astype(np.int32)], 1.0, cv2.LINE_AA)
-            colour = np.array(
-                [rng.uniform(0.0, 0.5), rng.uniform(0.1, 0.6), rng.uniform(0.4, 1.0)], np.float32
-            )
-            tint = rng.uniform(0.0, 0.9)
-            thing = texture * (1.0 - tint) + (0.3 + 0.7 * texture) * colour * tint
-            canvas += mask[..., None] * (thing - canvas)
-
-    def _put_structures(self, canvas: Float, unit: float, rng: np.random.Generator) -> None:
-        """Poles, gates and boxes in paint colours, as robots find them in test pools; bends look like fists."""
-        if rng.random() >= self._settings.structures:
-            return
-        width, height = self._settings.size
-        thick = max(1, round(unit * rng.uniform(0.1, 0.5)))
-        drawn = canvas.copy()
-        top, bottom = rng.uniform(-0.1, 0.6) * height, rng.uniform(0.5, 1.2) * height
-        feet = np.sort(rng.uniform(0.0, 1.0, rng.integers(1, 4))) * width
-        lean = rng.normal(0.0, 0.06) * height
-        heads = [(round(x + lean), round(top + rng.normal(0.0, 0.04) * height)) for x in feet]
-        for x, head in zip(feet, heads, strict=True):
-            cv2.line(drawn, (round(x), round(bottom)), head, _paint(rng), thick, cv2.LINE_AA)
-            if rng.random() < 0.6:  # a joint of another colour
-                joint = (
-                    head[0] + round(rng.normal(0.0, 1.0) * thick),
-                    head[1] + round(rng.uniform(0, 3) * thick),
-                )
-                cv2.line(drawn, head, joint, _paint(rng), round(1.2 * thick), cv2.LINE_AA)
-        if len(heads) > 1 and rng.random() < 0.7:
-            cv2.line(drawn, heads[0], heads[-1], _paint(rng), thick, cv2.LINE_AA)
-        for _ in range(rng.integers(0, 3)):
-            corner = rng.uniform(0.0, 0.9, 2) * (width, height)
-            size = unit * rng.uniform(0.4, 2.0, 2)
-            self._box(drawn, corner, size, rng)
-        canvas += rng.uniform(0.4, 1.0) * (drawn - canvas)
-
-    @staticmethod
-    def _box(
-        canvas: Float, corner: NDArray[np.float64], size: NDArray[np.float64], rng: np.random.Generator
-    ) -> None:
-        """A machine: a dark box with stripes and tubes."""
-        x, y, wide, tall = (round(float(value)) for value in (*corner, *size))
-        body = (rng.uniform(0.02, 0.35) * np.ones(3)).tolist()
-        cv2.rectangle(canvas, (x, y), (x + wide, y + tall), body, cv2.FILLED)
-        for _ in range(rng.integers(0, 5)):
-            ends = rng.uniform(0.0, 1.0, (2, 2)) * size + corner
-            start, end = ((round(float(a)), round(float(b))) for a, b in ends)
-            cv2.line(canvas, start, end, _paint(rng), max(1, tall // 8), cv2.LINE_AA)
+    def _put_things(self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]) -> None:
+        """What stands about and is no hand, where a hand is `unit` pixels high; used pictures go into `sources`."""
+        put_decoys(
+            canvas, unit, self._settings.decoys, lambda: self._background(self._rooms, rng, sources), rng
+        )
+        if rng.random() < self._settings.structures:
+            put_structures(canvas, unit, rng)
 
     def _hands(self, rng: np.random.Generator) -> list[Cutout]:
         """Two hands of one person, image-left first: the second is the mirror image of a left hand."""
@@ -299,8 +227,7 @@ class Composer:
             canvas = np.asarray(cv2.GaussianBlur(canvas, (0, 0), rng.uniform(0.5, 4.0)), np.float32)
         width, height = settings.size
         unit = float(height * np.exp(rng.uniform(*np.log(settings.hand_height))))
-        self._put_decoys(canvas, unit, rng, sources)
-        self._put_structures(canvas, unit, rng)
+        self._put_things(canvas, unit, rng, sources)
         axis = rng.uniform(0.3, 0.7) * width
         shoulder = rng.uniform(0.3, 0.85) * height
         hands = self._hands(rng)

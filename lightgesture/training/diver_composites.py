@@ -148,8 +148,7 @@ class DiverComposer(Composer):
         else:
             coded = self._background(self._waters if is_wet else self._rooms, rng, sources)
             unit = float(rng.uniform(15.0, 60.0))
-            self._put_decoys(coded, unit, rng, sources)
-            self._put_structures(coded, unit, rng)
+            self._put_things(coded, unit, rng, sources)
             picture = np.asarray(np.power(coded, np.float32(2.2)), np.float32)
             if is_wet:
                 water = water_of_picture(picture, distance_m, rng)

@@ -11,7 +11,7 @@ from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.shading import Light
 from lightgesture.synth.textures import periodic_noise
 from lightgesture.synth.water import JERLOV_BGR, Water, make_water
-from lightgesture.training.composites import lamp_spots
+from lightgesture.training.decoys import lamp_spots
 
 Random = np.random.Generator
 RIPPLES_SIZE = 256

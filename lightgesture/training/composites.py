@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from lightgesture.features.types import Box, Image
 from lightgesture.training.cutouts import Cutout
 from lightgesture.training.decoys import lamp_spots, put_decoys, put_structures
+from lightgesture.training.drawn_body import draw_body
 
 Float = NDArray[np.float32]
 
@@ -168,54 +169,6 @@ class Composer:
         hands = [first.mirrored(), second]
         return hands if rng.random() < 0.5 else [second.mirrored(), first]
 
-    def _draw_body(
-        self,
-        canvas: Float,
-        axis: float,
-        shoulder: float,
-        unit: float,
-        wrists: Sequence[tuple[float, float]],
-        skin: Float,
-        rng: np.random.Generator,
-    ) -> Box:
-        """Torso, head and arms in hand heights (`unit`, pixels), wrists already known; the box of the head."""
-        suit = rng.uniform(0.0, 0.25, 3) if rng.random() < 0.7 else rng.uniform(0.1, 0.9, 3)
-        cloth, flesh = suit.tolist(), (skin * rng.uniform(0.75, 1.1)).tolist()
-        half = unit * rng.uniform(0.9, 1.3)
-
-        def at(x: float, y: float) -> tuple[int, int]:
-            return round(x), round(y)
-
-        torso = [
-            at(axis - half, shoulder),
-            at(axis + half, shoulder),
-            at(axis + 0.8 * half, shoulder + 3.2 * unit),
-            at(axis - 0.8 * half, shoulder + 3.2 * unit),
-        ]
-        cv2.fillConvexPoly(canvas, np.array(torso, np.int32), cloth, cv2.LINE_AA)
-        head = at(axis, shoulder - 0.8 * unit)
-        axes = max(1, round(0.42 * unit)), max(1, round(0.58 * unit))
-        cv2.ellipse(canvas, head, axes, 0, 0, 360, flesh, cv2.FILLED, cv2.LINE_AA)
-        if rng.random() < 0.75:  # hair or hood, then often a mask
-            top = rng.uniform(0.0, 0.3, 3).tolist()
-            cv2.ellipse(canvas, head, axes, 0, 180, 360, top, cv2.FILLED, cv2.LINE_AA)
-            if rng.random() < 0.6:
-                corner = head[0] - axes[0] * 3 // 4, head[1] - axes[1] // 3
-                other = head[0] + axes[0] * 3 // 4, head[1] + axes[1] // 5
-                cv2.rectangle(canvas, corner, other, rng.uniform(0.0, 0.8, 3).tolist(), cv2.FILLED)
-        bare = rng.random() < self._settings.bare_arms
-        for wrist in wrists:
-            sign = 1.0 if wrist[0] > axis else -1.0
-            joint = at(axis + sign * half * 0.9, shoulder + 0.15 * unit)
-            elbow = at(
-                axis + sign * max(abs(wrist[0] - axis) * rng.uniform(0.7, 1.1), half),
-                max(shoulder, wrist[1]) + unit * rng.uniform(0.6, 1.3),
-            )
-            cv2.line(canvas, joint, elbow, cloth, max(1, round(0.55 * unit)), cv2.LINE_AA)
-            colour = flesh if bare else cloth
-            cv2.line(canvas, elbow, at(*wrist), colour, max(1, round(0.36 * unit)), cv2.LINE_AA)
-        return head[0] - axes[0], head[1] - axes[1], 2 * axes[0], 2 * axes[1]
-
     def compose(self, rng: np.random.Generator) -> Composite:
         """One picture; the same state of `rng` gives the same pixels on one machine and version."""
         settings = self._settings
@@ -250,7 +203,7 @@ class Composer:
         skin = hands[0].image[opaque].mean(axis=0).astype(np.float32) / 255.0
         faces: tuple[Box, ...] = ()
         if chosen or rng.random() < 0.5:
-            faces = (self._draw_body(person, axis, shoulder, unit, wrists, skin, rng),)
+            faces = (draw_body(person, axis, shoulder, unit, wrists, skin, settings.bare_arms, rng),)
         boxes, tokens = [], []
         for hand, place in chosen:
             box = _paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))

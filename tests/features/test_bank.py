@@ -60,7 +60,8 @@ def test_many_outlines_at_once_are_described_as_each_by_the_library():
 def test_moving_and_enlarging_hardly_change_a_descriptor(fingers, scale, at):
     # A smaller drawing has thinner gaps between its fingers, down to none: another outline, not the same one smaller.
     first, second = describe_outlines([_hand(fingers), _hand(fingers, scale, at=at)])
-    assert np.linalg.norm(first - second) < 0.3
+    # Among a thousand sizes the farthest from the first is an open hand's, by 0.203.
+    assert np.linalg.norm(first - second) < 0.21
 
 
 @given(fingers=st.integers(1, 5), lean=st.floats(10, 40))

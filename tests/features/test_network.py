@@ -76,10 +76,11 @@ def _steps(network, inputs, name):
 @settings(max_examples=10, deadline=None)
 def test_a_layer_differs_by_a_step_at_most_between_the_run_times(layer, seed, count):
     pytest.importorskip("ai_edge_litert")
-    # XNNPACK multiplies by a rounded float where the reference has 31 bits, so a tie may fall to the other side.
+    # XNNPACK multiplies by a rounded float where the reference has 31 bits, so a tie may fall to the other side; an
+    # addition, which scales both of its operands so, has the most of them.
     steps = _steps(random_network(seed, LAYERS[layer], ("y",)), _input(seed, count), "y")
     assert steps.max() < 1.5
-    assert (steps > 0.5).mean() < 0.1
+    assert (steps > 0.5).mean() < (0.1 if layer == "add" else 0.02)
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 477])

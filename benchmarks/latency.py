@@ -23,7 +23,8 @@ from lightgesture.benchmarks.paper_chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
-from lightgesture.console import ReaderGoneError, drop_output, print_line, say
+from lightgesture.cli import exit_status
+from lightgesture.console import print_line, say
 from lightgesture.datasets import find_data, group_samples, read_frames
 from lightgesture.decoding import SAMPLE
 from lightgesture.errors import ExitStatus, InputError, UsageError
@@ -114,8 +115,8 @@ def write_json(path: Path, content: object) -> None:
         raise UsageError(f"{path}: cannot be written ({error.strerror}); name another with --out") from error
 
 
-def run(args: argparse.Namespace) -> None:
-    """Measure, print the table, write the file."""
+def run(args: argparse.Namespace) -> int:
+    """Measure, print the table, write the file; 0 when all was done."""
     settings = replace(LatencySettings(), rounds=args.rounds)
     data = _find_data(args.data)
     clips = read_clips(data, settings)
@@ -129,6 +130,7 @@ def run(args: argparse.Namespace) -> None:
         found = [row for table in tables for row in table.to_dicts()]
         content = {"machine": describe_machine(), "settings": asdict(settings), "rows": found}
         write_json(Path(args.out), content)
+    return ExitStatus.OK
 
 
 def _paper_maker(data: Path | None) -> Callable[[], PaperChain] | None:
@@ -167,21 +169,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--rounds", type=_count, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
     )
-    try:
-        run(parser.parse_args(argv))
-    except InputError as error:
-        say(str(error))
-        return ExitStatus.SOME_FAILED
-    except UsageError as error:
-        say(str(error))
-        return ExitStatus.USAGE
-    except KeyboardInterrupt:
-        say("interrupted; nothing was written")
-        return ExitStatus.INTERRUPTED
-    except ReaderGoneError:
-        drop_output()
-        return ExitStatus.SOME_FAILED
-    return ExitStatus.OK
+    args = parser.parse_args(argv)
+    return exit_status(lambda: run(args), "nothing was written")
 
 
 if __name__ == "__main__":

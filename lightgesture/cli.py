@@ -7,7 +7,7 @@ that was asked for, so that `lightgesture --help` is quick and loads none of the
 import argparse
 import importlib
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NoReturn, Protocol, cast
 
 from lightgesture._version import __version__
@@ -46,8 +46,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     0: all good. 1: some inputs failed, or the reader of the results went away; the other inputs are done.
     2: wrong usage or configuration. 130: interrupted; the results of finished inputs are kept.
     """
+    arguments = sys.argv[1:] if argv is None else list(argv)
+    return exit_status(lambda: _run(arguments), "the results of finished inputs are kept")
+
+
+def exit_status(work: Callable[[], int], interrupted: str) -> int:
+    """Do the work of a command line and return its exit status, or that of the error that ended it, told in one line.
+
+    interrupted: what becomes of the results when the user interrupts.
+    """
     try:
-        return _run(sys.argv[1:] if argv is None else list(argv))
+        return work()
     except InputError as error:
         say(str(error))
         return ExitStatus.SOME_FAILED
@@ -55,7 +64,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         say(str(error))
         return ExitStatus.USAGE
     except KeyboardInterrupt:
-        say("interrupted; the results of finished inputs are kept")
+        say(f"interrupted; {interrupted}")
         return ExitStatus.INTERRUPTED
     except (ReaderGoneError, BrokenPipeError):
         drop_output()

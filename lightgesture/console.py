@@ -90,7 +90,7 @@ class Progress:
 
 @contextmanager
 def native_messages_muted() -> Iterator[None]:
-    """Keep what FFmpeg, libpng and their like print by themselves off standard error.
+    """Keep what FFmpeg, libpng, LiteRT and their like print by themselves off standard error.
 
     They write to file descriptor 2 behind Python's back, and every one of their complaints comes back as
     a failed call that is reported in one clear line anyway. Within this block `sys.stderr` has the

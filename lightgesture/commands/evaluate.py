@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from lightgesture.commands import evaluate_regions
-from lightgesture.console import print_line, say
+from lightgesture.console import native_messages_muted, print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
-    with OneBlasThread().block():
+    with native_messages_muted(), OneBlasThread().block():
         return run_suite(args) if args.target == SUITE else run_pictures(args)
 
 

@@ -2,6 +2,8 @@
 
 import argparse
 import json
+import subprocess
+import sys
 from copy import copy
 
 import cv2
@@ -62,6 +64,13 @@ def test_all_targets_as_text(command, capsys):
         "Frames without a gesturing diver: nothing may be found",
     ]
     assert captured.err == ""
+
+
+def test_native_libraries_say_nothing_on_standard_error(data):
+    command = [sys.executable, "-m", "lightgesture", "evaluate", "regions", "--selector", "learned"]
+    done = subprocess.run([*command, "--data", str(data)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("Hands found in whole frames\n")
 
 
 def test_regions_alone_are_found_and_not_read(command, monkeypatch, capsys):

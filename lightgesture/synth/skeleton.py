@@ -26,7 +26,6 @@ FloatArray = NDArray[np.float64]
 
 FINGERS = ("thumb", "index", "middle", "ring", "little")
 JOINT_COUNT = 21
-WRIST = 0
 
 # Rows: thumb, index, middle, ring, little. Columns of a finger: MCP flexion, MCP abduction, PIP and DIP flexion.
 # Columns of the thumb: radial abduction of the metacarpal (angle to y in the plane of the palm), its palmar
@@ -184,8 +183,3 @@ def pose_skeleton(pose: HandPose, proportions: Proportions = MEAN_PROPORTIONS) -
     flexion, deviation = pose.wrist
     forearm = rotation_z(float(deviation)) @ rotation_x(-float(flexion))
     return Skeleton(points, frames, forearm)
-
-
-def mirror_points(points: FloatArray) -> FloatArray:
-    """A left hand's points from a right hand's (…, 3), and the reverse."""
-    return np.asarray(points * np.array([-1.0, 1.0, 1.0]))

@@ -13,7 +13,6 @@ from lightgesture.synth.skeleton import (
     WRIST_LIMITS_MAX,
     WRIST_LIMITS_MIN,
     HandPose,
-    mirror_points,
     pose_skeleton,
     sample_proportions,
 )
@@ -111,12 +110,6 @@ def test_a_passage_begins_and_ends_at_its_signs_and_moves_smoothly():
     assert way[-1] == pytest.approx(pose_skeleton(end).points)
     steps = [np.abs(b - a).max() for a, b in pairwise(way)]
     assert max(steps) < 20.0
-
-
-def test_mirroring_swaps_the_thumb_side():
-    points = pose_skeleton(token_pose("5", np.random.default_rng(0), 0.0)).points
-    assert points[4, 0] > 0.0 > mirror_points(points)[4, 0]
-    assert mirror_points(mirror_points(points)) == pytest.approx(points)
 
 
 def test_thumb_direction_chooses_the_face():

@@ -13,9 +13,11 @@ Float = NDArray[np.float32]
 
 def softmax(scores: Float, temperature: float) -> Float:
     """Probabilities from scores (n, k), float32 (n, k)."""
-    scaled = scores / np.float32(temperature)
-    powers = np.exp(scaled - scaled.max(axis=1, keepdims=True))
-    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
+    powers = scores / np.float32(temperature)
+    powers -= powers.max(axis=1, keepdims=True)
+    np.exp(powers, out=powers)
+    powers /= powers.sum(axis=1, keepdims=True)
+    return np.asarray(powers, np.float32)
 
 
 def fit_temperature(scores: Float, truth: NDArray[np.int64]) -> float:
@@ -36,9 +38,9 @@ def none_where_small(
     probabilities: Float, classes: Sequence[str], boxes: Sequence[Box], smallest_hand: int
 ) -> Float:
     """The same, with certainty of `none` where the longer side of a box has fewer pixels than `smallest_hand`."""
-    if NONE in classes:
-        too_small = [max(box[2], box[3]) < smallest_hand for box in boxes]
-        probabilities[too_small] = np.eye(len(classes), dtype=np.float32)[list(classes).index(NONE)]
+    for place, box in enumerate(boxes):
+        if max(box[2], box[3]) < smallest_hand and NONE in classes:
+            probabilities[place] = [name == NONE for name in classes]
     return probabilities
 
 

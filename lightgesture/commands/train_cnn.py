@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps",
         type=count,
         metavar="N",
-        help="of the training (default: 16000); the teacher takes half of them",
+        help="of the training (default: 10000); the teacher takes half of them",
     )
     parser.add_argument(
         "--no-teacher",

@@ -54,8 +54,8 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 16000
-    teacher_steps: int = 8000
+    steps: int = 10000
+    teacher_steps: int = 5000
     one_in: int = 12
     smallest_hand: int = 12
     pool: PoolSettings = field(default_factory=PoolSettings)
@@ -128,7 +128,7 @@ def fit(
     if training.teacher_steps:
         larger = make_net(teacher_nodes(len(classes)), patch.size, 0, seed)
         how = replace(settings, steps=training.teacher_steps)
-        teacher = train_hand_net(larger, samples, scale, how, seed + 1, folder / "teacher.pt", progress)
+        teacher = train_hand_net(larger, samples, scale, how, seed, folder / "teacher.pt", progress)
     net = make_net(hand_nodes(len(classes), length, training.size), patch.size, length, seed)
     net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress, teacher)
     return CnnModel(

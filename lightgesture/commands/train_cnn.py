@@ -29,16 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 8000)")
     parser.add_argument(
-        "--steps",
+        "--teacher-steps",
         type=count,
         metavar="N",
-        help="of the training (default: 10000); the teacher takes half of them",
-    )
-    parser.add_argument(
-        "--no-teacher",
-        action="store_true",
-        help="learn from the labels alone, without a larger net's answers",
+        help="of the larger net that is learnt from; 0: learn from the labels alone (default: 5000)",
     )
     parser.add_argument(
         "--copies",
@@ -90,9 +86,9 @@ def _training(args: argparse.Namespace) -> "CnnTraining":
         contours=args.outline,
     )
     if args.steps is not None:
-        training = replace(training, steps=args.steps, teacher_steps=max(1, args.steps // 2))
-    if args.no_teacher:
-        training = replace(training, teacher_steps=0)
+        training = replace(training, steps=args.steps)
+    if args.teacher_steps is not None:
+        training = replace(training, teacher_steps=args.teacher_steps)
     pool = training.pool
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)

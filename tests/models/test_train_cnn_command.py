@@ -11,14 +11,14 @@ from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
 
 pytest.importorskip("torch")
-QUICK = ("--copies", "4", "--synthetic", "0", "--steps", "60", "--size", "small")
+QUICK = ("--copies", "4", "--synthetic", "0", "--steps", "60", "--teacher-steps", "15", "--size", "small")
 
 
 def train(folder: Path, out: Path, *more: str) -> int:
     return main(["train", "cnn", "--data", str(folder), "--out", str(out), *QUICK, *more])
 
 
-@pytest.mark.parametrize("more", [(), ("--outline", "--no-teacher")], ids=["taught", "outline"])
+@pytest.mark.parametrize("more", [(), ("--outline", "--teacher-steps", "0")], ids=["taught", "outline"])
 def test_folders_become_a_model_and_its_card(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], more: tuple[str, ...]
 ) -> None:
@@ -43,7 +43,7 @@ def test_folders_become_a_model_and_its_card(
 
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
     for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
-        more = ("--seed", seed, "--quiet", "--no-teacher")
+        more = ("--seed", seed, "--quiet", "--teacher-steps", "0")
         assert train(folder, tmp_path / f"{name}.npz", *more) == 0
     arrays = {}
     for name in "abc":

@@ -143,6 +143,7 @@ def augmentation(study: Study, training: CnnTraining, folder: Path, args: argpar
         place = folder / "_".join(name.split())
         if originals is None:
             originals = read_originals(training, study.rows)
+        say(f"{name}: drawing its pool")
         pool = draw_pool(originals, settings, training, place / "pool", say)
         own = replace(study, pool=pool)
         rows.append(_on_sources(own, name, replace(training, pool=settings), place))

@@ -1,22 +1,14 @@
-"""Accuracy of the classifier on given boxes and of the whole chain on real frames, over a data folder.
+"""Accuracy of the whole chain on real frames over a data folder, and what every report is made of.
 
 `lightgesture evaluate` is the thin command in front of this module.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
+from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_picture, save_sheet
 from lightgesture.benchmarks.hand_bank import build_bank
-from lightgesture.benchmarks.hands import (
-    HandAnswer,
-    by_source_table,
-    by_token_table,
-    classify,
-    confusion_table,
-    summary_table,
-)
 from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, product
 from lightgesture.benchmarks.region_tables import (
     instructions_table,
@@ -30,9 +22,7 @@ from lightgesture.benchmarks.tables import Table
 from lightgesture.datasets import (
     Label,
     Sample,
-    group_samples,
     read_frames,
-    read_hands,
     read_negatives,
     read_webcam,
 )
@@ -57,33 +47,13 @@ class Failure:
 @dataclass(frozen=True, slots=True)
 class Report:
     """Tables of an evaluation, and the failures behind them by the name of their contact sheet: as pictures to be read
-    and drawn, or as tiles that are drawn already.
+    and drawn, or as tiles that are drawn already. pictures: whole ones, by name.
     """
 
     tables: tuple[Table, ...]
     failures: dict[str, list[Failure]]
     tiles: Mapping[str, Sequence[Image]] = field(default_factory=dict)
-
-
-def evaluate_hands(classifier: Classifier, model: str, data: Path, progress: Progress) -> Report:
-    """The classifier on `hands/val`, and on the labelled boxes of whole frames where the folder has them."""
-    answers = classify(classifier, progress(read_hands(data), "hands val"))
-    parts: list[tuple[str, Sequence[HandAnswer]]] = [
-        ("hands val", answers),
-        ("hands val, none doubtful", [answer for answer in answers if not answer.sample.doubtful]),
-    ]
-    for group, members in group_samples(frame_samples(data)).items():
-        parts.append(
-            (f"{group}, boxes given", classify(classifier, progress(members, f"{group}, boxes given")))
-        )
-    tables = (
-        summary_table(parts, model),
-        by_token_table(answers, model),
-        by_source_table(answers, model),
-        confusion_table(answers, model),
-    )
-    failures = {sheet_name(part): _hand_failures(part_answers) for part, part_answers in parts}
-    return Report(tables, failures)
+    pictures: Mapping[str, Image] = field(default_factory=dict)
 
 
 def evaluate_regions(methods: Sequence[Method], data: Path, progress: Progress) -> Report:
@@ -123,8 +93,14 @@ def default_methods(
 def save_failures(
     report: Report, folder: Path, warn: Callable[[str], None], suffix: str = ".jpg"
 ) -> list[Path]:
-    """Draw a contact sheet per list of failures; returns the files written. suffix: .jpg, or .png for exact pixels."""
+    """Draw a contact sheet per list of failures, and write the pictures as .png; returns the files written.
+
+    suffix: of the sheets, .jpg, or .png for exact pixels.
+    """
     written = []
+    for name, picture in report.pictures.items():
+        save_picture(folder / f"{name}.png", picture)
+        written.append(folder / f"{name}.png")
     for name in (*report.failures, *report.tiles):
         failures, tiles = report.failures.get(name, []), report.tiles.get(name, ())
         count = len(failures) + len(tiles)
@@ -150,19 +126,6 @@ def frame_samples(data: Path) -> list[Sample]:
 
 def _tile(failure: Failure) -> Image:
     return draw_tile(read_picture(failure.path), failure.labels, failure.readings, failure.caption)
-
-
-def _hand_failures(answers: Iterable[HandAnswer]) -> list[Failure]:
-    return [
-        Failure(
-            answer.sample.path,
-            (answer.label,),
-            (Reading(answer.label.box, answer.label.side, answer.token),),
-            answer.sample.source,
-        )
-        for answer in answers
-        if answer.failed
-    ]
 
 
 def _run_failures(run: Run) -> list[Failure]:

@@ -83,14 +83,22 @@ def choose_evenly(count: int, limit: int = MAX_TILES) -> list[int]:
 
 def save_sheet(path: Path, tiles: Sequence[Image]) -> None:
     """Write tiles as one picture of the kind of the path's suffix, whole or not at all; without tiles, nothing."""
-    if not tiles:
-        return
-    missing = -len(tiles) % COLUMNS
+    if tiles:
+        save_picture(path, arranged(tiles))
+
+
+def arranged(tiles: Sequence[Image], columns: int = COLUMNS) -> Image:
+    """At least one tile, all of one size, as rows of a picture; black where the last row has none."""
+    missing = -len(tiles) % columns
     cells = [*tiles, *[np.zeros_like(tiles[0])] * missing]
-    rows = [np.hstack(cells[start : start + COLUMNS]) for start in range(0, len(cells), COLUMNS)]
-    coded, content = cv2.imencode(path.suffix, np.vstack(rows))
+    return np.vstack([np.hstack(cells[start : start + columns]) for start in range(0, len(cells), columns)])
+
+
+def save_picture(path: Path, picture: Image) -> None:
+    """Write a picture of the kind of the path's suffix, whole or not at all."""
+    coded, content = cv2.imencode(path.suffix, picture)
     if not coded:
-        raise ValueError(f"{path}: OpenCV could not encode the sheet")
+        raise ValueError(f"{path}: OpenCV could not encode the picture")
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.name + ".part")
     temporary.write_bytes(content.tobytes())

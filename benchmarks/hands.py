@@ -1,7 +1,8 @@
 """Reading hands in given boxes: accuracy per token and per source, and how well `none` is told apart.
 
 Accuracy is the argmax over the ten tokens with nothing refused, on hands of the ten tokens; the hands
-labelled `none` enter the AUROC of P(none) and the share that the argmax over all classes refuses.
+labelled `none` enter the AUROC of P(none) and the share that the argmax over all classes refuses. Beside it stands
+what the product would read, by its own rule and threshold.
 """
 
 from collections.abc import Iterable, Sequence
@@ -24,6 +25,8 @@ from lightgesture.benchmarks.scorer import (
 )
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.datasets import Label, Sample
+from lightgesture.models import NONE
+from lightgesture.reading import ReadingSettings, read_token
 from lightgesture.sources import read_picture
 
 UNSIDED = "left"
@@ -32,17 +35,38 @@ UNSIDED = "left"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HandAnswer:
-    """One labelled hand and the classifier's answer.
-
-    token: the likeliest of the ten. best: the likeliest of all classes. none: P(none), None for a model that
-    has no such class.
-    """
+    """One labelled hand and the classifier's answer. probabilities: float32 (classes,), columns named by `classes`."""
 
     sample: Sample
     label: Label
-    token: str
-    best: str
-    none: float | None
+    classes: tuple[str, ...]
+    probabilities: NDArray[np.float32]
+
+    @property
+    def token(self) -> str:
+        """The likeliest of the ten."""
+        return self.likeliest_tokens()[0][0]
+
+    @property
+    def best(self) -> str:
+        """The likeliest of all classes."""
+        return self.classes[int(self.probabilities.argmax())]
+
+    @property
+    def none(self) -> float | None:
+        """P(none), None for a model that has no such class."""
+        return float(self.probabilities[self.classes.index(NONE)]) if NONE in self.classes else None
+
+    @property
+    def read(self) -> str | None:
+        """What the product reads at its default threshold, None where it refuses."""
+        return read_token(self.probabilities, self.classes, False, False, ReadingSettings())[0]
+
+    def likeliest_tokens(self, count: int = 1) -> list[tuple[str, float]]:
+        """The likeliest of the ten tokens and their probabilities, the first of equals first."""
+        order = np.argsort(-self.probabilities, kind="stable")
+        named = [(self.classes[place], float(self.probabilities[place])) for place in order]
+        return [(name, value) for name, value in named if name != NONE][:count]
 
     @property
     def truth(self) -> str:
@@ -65,20 +89,12 @@ def classify(classifier: Classifier, samples: Iterable[Sample]) -> list[HandAnsw
                 [label.box for label in labels],
                 [label.side or UNSIDED for label in labels],
             )
+            classes = tuple(classifier.classes)
             answers.extend(
-                _hand_answer(classifier.classes, sample, label, row)
+                HandAnswer(sample, label, classes, row)
                 for label, row in zip(labels, probabilities, strict=True)
             )
     return answers
-
-
-def _hand_answer(
-    classes: Sequence[str], sample: Sample, label: Label, probabilities: NDArray[np.float32]
-) -> HandAnswer:
-    tokens = [index for index, name in enumerate(classes) if name != "none"]
-    token = max(tokens, key=lambda index: probabilities[index])
-    none = float(probabilities[classes.index("none")]) if "none" in classes else None
-    return HandAnswer(sample, label, classes[token], classes[int(probabilities.argmax())], none)
 
 
 def summary_table(parts: Sequence[tuple[str, Sequence[HandAnswer]]], model: str) -> Table:
@@ -86,17 +102,21 @@ def summary_table(parts: Sequence[tuple[str, Sequence[HandAnswer]]], model: str)
     columns = (
         *("model", "part", "hands", "right", "accuracy", "low_95", "high_95", "macro_token", "macro_source"),
         *("worst_token", "worst_accuracy", "none_hands", "none_auroc", "none_refused", "tokens_refused"),
+        *("read", "read_wrong", "none_read"),
     )
-    rows = tuple({"model": model, **_summary_row(part, answers)} for part, answers in parts if answers)
+    rows = tuple({"model": model, **summary_cells(part, answers)} for part, answers in parts if answers)
     note = (
         "accuracy: argmax over the ten tokens, nothing refused; none_auroc: P(none) of `none` hands against "
-        "tokens;\nnone_refused, tokens_refused: shares whose argmax over all classes is `none`."
+        "tokens;\nnone_refused, tokens_refused: shares whose argmax over all classes is `none`; read, read_wrong: "
+        "shares of the\ntokens that the product reads rightly and wrongly at its threshold of "
+        f"{ReadingSettings().token_probability}; none_read: of the `none` hands\nthat get a token there."
     )
     return Table("hands", "Hands in given boxes", columns, rows, note)
 
 
-def _summary_row(part: str, answers: Sequence[HandAnswer]) -> dict[str, Cell]:
-    tokens = _token_answers(answers)
+def summary_cells(part: str, answers: Sequence[HandAnswer]) -> dict[str, Cell]:
+    """Figures of one part; see the note of the table."""
+    tokens = token_answers(answers)
     others = [answer for answer in answers if not is_token(answer.label.token)]
     right = sum(not answer.failed for answer in tokens)
     by_token = _tallies(tokens, [answer.truth for answer in tokens])
@@ -118,12 +138,15 @@ def _summary_row(part: str, answers: Sequence[HandAnswer]) -> dict[str, Cell]:
         "none_auroc": auroc(_none_scores(others), _none_scores(tokens)),
         "none_refused": _refused(others),
         "tokens_refused": _refused(tokens),
+        "read": share(sum(answer.read == answer.truth for answer in tokens), len(tokens)),
+        "read_wrong": share(sum(answer.read not in (None, answer.truth) for answer in tokens), len(tokens)),
+        "none_read": share(sum(answer.read is not None for answer in others), len(others)),
     }
 
 
 def by_token_table(answers: Sequence[HandAnswer], model: str) -> Table:
     """Accuracy per token, and what each is most often mistaken for."""
-    tokens = _token_answers(answers)
+    tokens = token_answers(answers)
     pairs = confusion([answer.truth for answer in tokens], [answer.token for answer in tokens])
     rows = []
     for token, tally in sorted(_tallies(tokens, [answer.truth for answer in tokens]).items()):
@@ -137,7 +160,7 @@ def by_token_table(answers: Sequence[HandAnswer], model: str) -> Table:
 
 def by_source_table(answers: Sequence[HandAnswer], model: str) -> Table:
     """Accuracy per source, the worst first."""
-    tokens = _token_answers(answers)
+    tokens = token_answers(answers)
     tallies = _tallies(tokens, [answer.sample.source for answer in tokens])
     ordered = sorted(tallies.items(), key=lambda item: (item[1].accuracy or 0.0, -item[1].count))
     rows = tuple({"model": model, "source": source, **_tally_cells(tally)} for source, tally in ordered)
@@ -147,7 +170,7 @@ def by_source_table(answers: Sequence[HandAnswer], model: str) -> Table:
 
 def confusion_table(answers: Sequence[HandAnswer], model: str) -> Table:
     """Counts of each (truth, answer), truth down and answers across."""
-    tokens = _token_answers(answers)
+    tokens = token_answers(answers)
     pairs = confusion([answer.truth for answer in tokens], [answer.token for answer in tokens])
     names = sorted({name for pair in pairs for name in pair})
     rows: list[dict[str, Cell]] = []
@@ -158,7 +181,8 @@ def confusion_table(answers: Sequence[HandAnswer], model: str) -> Table:
     return Table("hands_confusion", title, ("model", "truth", *names), tuple(rows))
 
 
-def _token_answers(answers: Sequence[HandAnswer]) -> list[HandAnswer]:
+def token_answers(answers: Sequence[HandAnswer]) -> list[HandAnswer]:
+    """The hands of the ten tokens."""
     return [answer for answer in answers if is_token(answer.label.token)]
 
 

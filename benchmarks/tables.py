@@ -46,6 +46,19 @@ def to_text(tables: Sequence[Table]) -> str:
     return "\n\n".join(table.to_text() for table in tables)
 
 
+def side_by_side(tables: Sequence[Table], key: str | None = None) -> Table:
+    """The rows of several like tables as one: rows with an equal cell in the column `key` stand together, in the order
+    in which the cells first appear; without a key, one table's rows follow the other's.
+    """
+    columns = tuple(dict.fromkeys(column for table in tables for column in table.columns))
+    rows = [row for table in tables for row in table.rows]
+    if key is not None:
+        places = {cell: place for place, cell in enumerate(dict.fromkeys(row[key] for row in rows))}
+        rows.sort(key=lambda row: places[row[key]])
+    first = tables[0]
+    return Table(first.name, first.title, columns, tuple(rows), first.note)
+
+
 def _aligned(cells: Sequence[str], widths: Sequence[int], leads: Sequence[bool]) -> str:
     padded = [
         cell.ljust(width) if is_left else cell.rjust(width)

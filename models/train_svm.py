@@ -38,8 +38,9 @@ class SvmSettings:
     """How the machine is trained.
 
     features: how a patch becomes a vector. smallest_hand: longer side of the smallest box that is read, pixels.
-    directions: principal directions of the gradients that are kept, 32 to 256; more cost time and size.
-    contour_weight: variance of the contour numbers against that of the gradients, 0 to 1.
+    directions: principal directions of the gradients that are kept, 32 to 256; more cost time and size. 0 leaves the
+        gradients out.
+    contour_weight: variance of the contour numbers against that of the gradients, 0 to 1; alone they need any above 0.
     centres: expansion vectors, 500 to 8000. Accuracy grows with their logarithm, time and size with their number.
     width: gamma times the mean squared distance of two samples, 0.5 to 8; larger is a narrower kernel.
     altered_weight: weight of an altered copy beside 1 of an original; smaller reads plain pictures better,
@@ -217,7 +218,8 @@ def _projection(vectors: NDArray[np.float16], settings: SvmSettings) -> tuple[Fl
     )
     kept = len(variances)
     deviation = vectors[:, gradients:].std(axis=0, dtype=np.float64)
-    scale = np.sqrt(settings.contour_weight * variances.sum() / contour) / np.maximum(deviation, 1e-6)
+    spread = float(variances.sum()) if kept else 1.0
+    scale = np.sqrt(settings.contour_weight * spread / contour) / np.maximum(deviation, 1e-6)
     projection = np.zeros((gradients + contour, kept + contour))
     projection[:gradients, :kept] = directions
     projection[gradients:, kept:] = np.diag(np.where(deviation > 1e-6, scale, 0.0))

@@ -13,6 +13,7 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
     from lightgesture.benchmarks.tables import Table
+    from lightgesture.models import Classifier
 
 HANDS, REGIONS, SUITE = "hands", "regions", "suite"
 TARGETS = (HANDS, REGIONS, SUITE)
@@ -37,8 +38,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--model",
+        action="append",
         metavar="svm|cnn|PATH",
-        help=f"classifier (default: {DEFAULT_MODEL}; regions alone: none, hands are found and not read)",
+        help=f"classifier (default: {DEFAULT_MODEL}; regions alone: none, hands are found and not read); with hands "
+        "repeatable, the models stand side by side",
     )
     evaluate_regions.add_arguments(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
@@ -68,6 +71,8 @@ def run(args: argparse.Namespace) -> int:
         is_fitting = args.target == REGIONS or (args.target == SUITE and option == "selector")
         if getattr(args, option) and not is_fitting:
             raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
+    if args.target != HANDS and len(args.model or ()) > 1:
+        raise UsageError("several --model are compared in given boxes only; name the target: evaluate hands")
     if args.jobs < 1:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
@@ -96,23 +101,28 @@ def run_pictures(args: argparse.Namespace) -> int:
 
 def reports(args: argparse.Namespace, targets: "Sequence[str]", data: Path) -> "Iterator[tuple[Report, str]]":
     """What was asked for, one after the other, with the kind of picture that its failures are drawn to."""
-    from lightgesture.benchmarks import accuracy
-    from lightgesture.models import ModelError, load_classifier
+    from lightgesture.benchmarks import accuracy, reading_report
 
-    model = args.model or DEFAULT_MODEL
     is_reading = args.target != REGIONS or args.model is not None
-    try:
-        classifier = load_classifier(model) if is_reading else None
-    except ModelError as error:
-        raise UsageError(str(error)) from error
-    if classifier is not None and HANDS in targets:
-        yield accuracy.evaluate_hands(classifier, model, data, show_progress), ".jpg"
+    models = named_models(args) if is_reading else {}
+    if models and HANDS in targets:
+        yield reading_report.evaluate_reading(models, data, show_progress), ".jpg"
     if REGIONS in targets:
         for report in evaluate_regions.find_hands(args, data, show_progress):
             yield report, ".png"
-    if classifier is not None and REGIONS in targets:
-        methods = accuracy.default_methods(classifier, model, data)
-        yield accuracy.evaluate_regions(methods, data, show_progress), ".jpg"
+        for model, classifier in models.items():
+            methods = accuracy.default_methods(classifier, model, data)
+            yield accuracy.evaluate_regions(methods, data, show_progress), ".jpg"
+
+
+def named_models(args: argparse.Namespace) -> "dict[str, Classifier]":
+    """The classifiers that were asked for, by name or path, each once. UsageError: one cannot be used."""
+    from lightgesture.models import ModelError, load_classifier
+
+    try:
+        return {model: load_classifier(model) for model in args.model or [DEFAULT_MODEL]}
+    except ModelError as error:
+        raise UsageError(str(error)) from error
 
 
 def run_suite(args: argparse.Namespace) -> int:
@@ -121,18 +131,14 @@ def run_suite(args: argparse.Namespace) -> int:
     from lightgesture.benchmarks.accuracy import default_methods
     from lightgesture.benchmarks.suite_cache import cache_folder
     from lightgesture.benchmarks.suite_scenarios import SUITES
-    from lightgesture.models import ModelError, load_classifier
 
     data = suite_data(args.data)
     takes = [take for name in SUITES for take in suite.takes_of(name, data)]
     known = {*SUITES, *(take.scenario.name for take in takes)}
     if unknown := [name for name in args.only or () if name not in known]:
         raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
-    try:
-        model = args.model or DEFAULT_MODEL
-        methods = default_methods(load_classifier(model), model, data, evaluate_regions.named_selectors(args))
-    except ModelError as error:
-        raise UsageError(str(error)) from error
+    ((model, classifier),) = named_models(args).items()
+    methods = default_methods(classifier, model, data, evaluate_regions.named_selectors(args))
     chosen = suite.choose_takes(takes, args.only or (), args.quick)
     answers = suite.run_suite(methods, chosen, cache_folder(), show_progress, args.jobs)
     print_tables(suite_tables.all_tables(answers, methods[0].name), args.json)

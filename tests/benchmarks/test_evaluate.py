@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import ablation, accuracy, finding_report
+from lightgesture.benchmarks import ablation, accuracy, finding_report, reading_cost, reading_report
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
 from lightgesture.commands import evaluate
 from lightgesture.errors import InputError, UsageError
@@ -37,6 +37,8 @@ def command(monkeypatch, data, fake_classifier, fake_method):
     monkeypatch.setattr(models, "load_classifier", load)
     monkeypatch.setattr(accuracy, "product", make_pipeline)
     monkeypatch.setattr(finding_report, "selector_method", lambda name: copy_named(fake_method, name))
+    monkeypatch.setattr(reading_report, "selector_method", lambda name: copy_named(fake_method, name))
+    monkeypatch.setattr(reading_cost, "added_memory", lambda name, settings: 7.5)
     parser = argparse.ArgumentParser()
     evaluate.add_arguments(parser)
 
@@ -55,6 +57,12 @@ def test_all_targets_as_text(command, capsys):
         "Hands in given boxes, per token",
         "Hands in given boxes, per source",
         "Confusion of tokens (row: truth, column: read as)",
+        "Reliability of the probabilities",
+        "Hands in bad boxes",
+        "Hands cut by the edge or half hidden",
+        "Random boxes in frames without a gesturing diver",
+        "Hands in boxes that the selector found",
+        "What reading costs",
         "Hands found in whole frames",
         "Hands found by token, single frames of all groups",
         "Frames without a gesturing diver in which hands were found",
@@ -122,19 +130,61 @@ def test_hands_are_scored_in_frames_too(command, capsys):
     command("hands", "--json")
     rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     parts = [row["part"] for row in rows if row["table"] == "hands"]
-    assert parts == ["hands val", "hands val, none doubtful", "hover, boxes given", "tank, boxes given"]
+    assert parts == [
+        *("hands val", "hands val, none doubtful", "hover, boxes given", "tank, boxes given"),
+        "all of lab, boxes given",
+    ]
+
+
+def test_models_stand_side_by_side(command, tmp_path, capsys):
+    models_named = ("--model", "svm", "--model", "my own.npz", "--model", "svm")
+    assert command("hands", "--json", *models_named, "--out", str(tmp_path)) == 0
+    rows = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+
+    def named(table, key):
+        return [(row[key], row["model"]) for row in rows if row["table"] == table]
+
+    assert named("hands_by_token", "token") == [
+        *(("2", "svm"), ("2", "my own.npz"), ("5", "svm"), ("5", "my own.npz")),
+    ]
+    assert named("hands_by_source", "source") == [("anna", "svm"), ("anna", "my own.npz")]
+    assert [model for _, model in named("hands_confusion", "truth")] == ["svm"] * 2 + ["my own.npz"] * 2
+    assert named("hands_found", "source") == [("lab", "svm"), ("lab", "my own.npz")]
+    costs = {row["model"]: row for row in rows if row["table"] == "hands_cost"}
+    assert costs["svm"]["memory_mb"] == 7.5
+    assert costs["my own.npz"]["file_kb"] is None
+    assert {"errors_svm.png", "errors_my_own_npz.png"} <= {path.name for path in tmp_path.iterdir()}
+
+
+@pytest.mark.parametrize("target", [[], ["regions"], ["suite"]])
+def test_several_models_need_their_target(command, target):
+    with pytest.raises(UsageError, match="name the target: evaluate hands"):
+        command(*target, "--model", "svm", "--model", "cnn")
+
+
+def test_without_whole_frames_the_first_hand_is_timed_twice(command, data, fake_classifier, capsys):
+    for name in ("frames", "negatives"):
+        (data / name).rename(data / f"no {name}")
+    command("hands", "--json")
+    tables = {json.loads(line)["table"] for line in capsys.readouterr().out.splitlines()}
+    assert {"hands_cost", "hands_boxes", "hands_hidden"} <= tables
+    assert not tables & {"hands_random", "hands_found"}
+    assert fake_classifier.calls[-1] == ((112, 112, 3), [(11, 9, 79, 96)] * 2, ["right", "left"])
 
 
 def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
     out = tmp_path / "sheets"
     command("--out", str(out))
     names = {path.name for path in out.iterdir()}
-    assert {"hands_val.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
+    assert {"svm_hover_boxes_given.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
     assert "fake_reef_1_single.jpg" not in names
     assert {name for name in names if not name.endswith(".jpg")} == {
-        f"found_{selector}_hover_{mode}.png"
-        for selector in ("learned", "classical")
-        for mode in ("single", "sequence")
+        *("errors_svm.png", "reliability.png", "confusions.png"),
+        *(
+            f"found_{selector}_hover_{mode}.png"
+            for selector in ("learned", "classical")
+            for mode in ("single", "sequence")
+        ),
     }
     sheet = cv2.imdecode(
         np.frombuffer((out / "fake_hover_single.jpg").read_bytes(), np.uint8), cv2.IMREAD_COLOR

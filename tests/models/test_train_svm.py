@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError, TrainingSample
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.train_svm import (
@@ -98,3 +99,17 @@ def test_wrong_samples_are_refused(samples: list[TrainingSample], quick: SvmSett
         train_svm([replace(samples[0], token="7")], quick)
     with pytest.raises(ModelError, match="source 0: box"):
         train_svm([replace(samples[0], box=(500, 0, 9, 9))], quick)
+
+
+def test_without_gradients_the_outline_alone_decides(
+    samples: list[TrainingSample], quick: SvmSettings
+) -> None:
+    model, held_out = train_svm(samples, replace(quick, directions=0), classes=NAMES)
+    gradients, contour = block_lengths(model.features)
+    assert model.projection.shape == (gradients + contour, contour)
+    assert not model.projection[:gradients].any()
+    assert (held_out.probabilities.argmax(axis=1) == held_out.truth).mean() > 0.9
+    vectors = np.tile(model.mean, (2, 1))
+    vectors[1, :gradients] += np.float32(0.3)
+    first, other = SvmClassifier(model).scores(vectors)
+    assert np.array_equal(first, other)

@@ -1,0 +1,147 @@
+"""What our classifiers are compared with: `python -m lightgesture.benchmarks.reading_baselines contours|paper`.
+
+contours: the textbook's way, the numbers of the hand's outline (Hu moments, hull, defects, radial signature) and a
+radial machine, without gradients. It is written as a model file, a further row for `evaluate hands --model FILE`.
+paper: the float network of the paper, trained on the pool of patches of `train cnn`.
+Both are trained on `hands/train` and scored on `hands/val`; neither is shipped.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from lightgesture.benchmarks.hands import (
+    by_source_table,
+    by_token_table,
+    classify,
+    confusion_table,
+    summary_table,
+)
+from lightgesture.benchmarks.methods import Classifier
+from lightgesture.benchmarks.study_cli import (
+    add_data_argument,
+    add_pool_arguments,
+    positive,
+    print_and_write,
+    run_command,
+    training_from,
+    whole,
+)
+from lightgesture.benchmarks.tables import Table
+from lightgesture.console import say
+from lightgesture.datasets import find_data, read_hands
+from lightgesture.features.hog import HogSettings
+from lightgesture.features.vector import VectorSettings
+from lightgesture.models import CLASSES
+from lightgesture.models.svm import SvmClassifier
+from lightgesture.models.svm_file import write_svm_model
+from lightgesture.models.train_svm import SvmSettings, train_svm
+
+CONTOURS, PAPER = "contours", "paper"
+
+
+def contour_settings(centres: int) -> SvmSettings:
+    """The shipped machine's, without gradients: these are reckoned in the fewest cells, and none is kept."""
+    features = VectorSettings(hog=HogSettings(cell=24))
+    return SvmSettings(features=features, directions=0, contour_weight=1.0, centres=centres)
+
+
+def run_contours(args: argparse.Namespace) -> None:
+    """Train, write the model file, score it on `hands/val`."""
+    from lightgesture.benchmarks.study_data import training_of
+    from lightgesture.training.cnn import read_originals
+    from lightgesture.training.samples import read_rows
+    from lightgesture.training.stream import StreamSettings, stream
+
+    data = find_data(args.data)
+    training = training_of(data, seed=args.seed)
+    rows = [row for row in read_rows(training.data) if row.source not in training.without]
+    say(f"reading {len(rows)} hands")
+    originals = read_originals(training, rows)
+    how = StreamSettings(copies=args.copies)
+    samples = stream(originals.hands, originals.backgrounds, originals.scenes, how, args.seed)
+    classes = [name for name in CLASSES if name in {row.token for row in rows}]
+    model, _ = train_svm(
+        samples, contour_settings(args.centres), classes=classes, seed=args.seed, progress=_told
+    )
+    write_svm_model(model, Path(args.out))
+    say(f"wrote {args.out}")
+    tables = val_tables(SvmClassifier(model), CONTOURS, data)
+    print_and_write(tables, args.json, {"copies": args.copies, "centres": args.centres, "seed": args.seed})
+
+
+def run_paper(args: argparse.Namespace) -> None:
+    """Train on the pool and score on `hands/val`."""
+    from lightgesture.training.checkpoints import need_torch
+
+    need_torch()
+    from lightgesture.benchmarks.paper_net import PaperNetClassifier, PaperNetSettings, train_paper_net
+    from lightgesture.benchmarks.study_data import open_study
+
+    training = training_from(args)
+    data = find_data(args.data)
+    study = open_study(data, Path(args.pool), training, say)
+    net = train_paper_net(
+        study.pool, training.pool.margin, study.classes, args.steps, PaperNetSettings(), args.seed, say
+    )
+    classifier = PaperNetClassifier(net, study.classes, training.pool.patch)
+    say(f"{classifier.weights} weights")
+    tables = val_tables(classifier, "paper's network", data)
+    print_and_write(
+        tables, args.json, {"steps": args.steps, "seed": args.seed, "weights": classifier.weights}
+    )
+
+
+def val_tables(classifier: Classifier, name: str, data: Path) -> list[Table]:
+    """The tables of `evaluate hands` that are about `hands/val`."""
+    answers = classify(classifier, read_hands(data))
+    sure = [answer for answer in answers if not answer.sample.doubtful]
+    return [
+        summary_table([("hands val", answers), ("hands val, none doubtful", sure)], name),
+        by_token_table(answers, name),
+        by_source_table(answers, name),
+        confusion_table(answers, name),
+    ]
+
+
+def _told(step: str, done: int, total: int) -> None:
+    """Every tenth of a step as a line; of a step of unknown length, every ten thousandth sample."""
+    every = max(total // 10, 1) if total else 10_048
+    if done == total or done % every == 0:
+        say(f"{step}: {done}{f' of {total}' if total else ''}")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m lightgesture.benchmarks.reading_baselines",
+        description="Train and score what we compare with.",
+    )
+    kinds = parser.add_subparsers(dest="kind", required=True)
+    contours = kinds.add_parser(CONTOURS, help="numbers of the outline alone, with a radial machine")
+    add_data_argument(contours)
+    contours.add_argument(
+        "--out", default="contours.npz", metavar="NPZ", help="model file (default: contours.npz)"
+    )
+    contours.add_argument(
+        "--copies", type=whole, default=1, metavar="N", help="altered copies of a hand (default 1)"
+    )
+    contours.add_argument(
+        "--centres", type=positive, default=1500, metavar="N", help="of the machine (default 1500)"
+    )
+    contours.add_argument(
+        "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default 0)"
+    )
+    contours.set_defaults(run=run_contours)
+    paper = kinds.add_parser(PAPER, help="the paper's network in floating point; needs torch")
+    add_data_argument(paper)
+    add_pool_arguments(paper)
+    paper.set_defaults(run=run_paper)
+    for kind in (contours, paper):
+        kind.add_argument("--json", metavar="FILE", help="write the rows here, too")
+    return run_command(parser, argv, lambda args: args.run(args))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

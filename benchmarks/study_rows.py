@@ -1,0 +1,97 @@
+"""One training as a row: a net or what a card tells, scored on hands that it did not see and on `hands/val`."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lightgesture.benchmarks.hands import HandAnswer, summary_cells
+from lightgesture.benchmarks.scorer import share
+from lightgesture.benchmarks.study_data import Mask, Study, answers_of, val_answers
+from lightgesture.benchmarks.tables import Cell
+from lightgesture.console import say
+from lightgesture.datasets import fold_of
+from lightgesture.errors import InputError
+from lightgesture.training.cnn import CnnTraining, fit
+
+PARTS = ("hands", "accuracy", "macro_token", "worst_token", "worst_accuracy", "none_auroc")
+"""Figures of a group of hands; see `hands.summary_table`."""
+COLUMNS = ("row", "sources", *(f"held_{name}" for name in PARTS), *(f"val_{name}" for name in PARTS))
+NOTE = (
+    "accuracy: argmax over the ten tokens, nothing refused; held: hands of `hands/train` that the row's model did not "
+    "see;\nval: `hands/val`. Nets in integers, one seed."
+)
+Rows = list[dict[str, Cell]]
+
+
+def fit_row(
+    study: Study, name: str, rows: Mask, held: Mask, training: CnnTraining, folder: Path
+) -> dict[str, Cell]:
+    """Train a net on rows of the pool, in a folder of its own, and score it on the held-out hands and on val."""
+    from lightgesture.features.network_nodes import multiply_adds
+    from lightgesture.models.cnn import CnnClassifier
+    from lightgesture.training.checkpoints import checkpoint_folder
+
+    request = {"training": repr(replace(training, jobs=1)), "rows": int(rows.sum()), "held": int(held.sum())}
+    # A training of other settings lies beside this one.
+    digest = sha256(repr(request).encode()).hexdigest()[:8]
+    parts = checkpoint_folder(folder / "_".join([*name.split(), digest]), request)
+    model = fit(study.pool, rows, study.classes, training, parts, lambda text: say(f"{name}: {text}"))
+    classifier = CnnClassifier(model)
+    seen = np.unique(study.pool.sources[rows])
+    row: dict[str, Cell] = {
+        "row": name,
+        "sources": int(np.isin(np.unique(study.sources), seen).sum()),
+        **scored_cells("held", answers_of(classifier, study, held)),
+        **scored_cells("val", val_answers(classifier, study)),
+        "multiply_adds": multiply_adds(model.network.inputs, model.network.nodes),
+        "weights": sum(own.weights.size + own.biases.size for own in model.network.weights.values()),
+    }
+    say(f"{name}: held {row.get('held_accuracy')}, val {row.get('val_accuracy')}")
+    return row
+
+
+def scored_cells(part: str, answers: Sequence[HandAnswer]) -> dict[str, Cell]:
+    """Figures of one part, their names beginning with it."""
+    cells = summary_cells(part, answers) if answers else {}
+    return {f"{part}_{name}": cells.get(name) for name in PARTS}
+
+
+def card_folds(card: Path, count: int) -> Rows:
+    """Accuracy of the sources of each fold as a card tells it; every source was answered by a machine without it.
+
+    Raises InputError for a card without such answers.
+    """
+    try:
+        sources: dict[str, dict[str, Any]] = json.loads(card.read_text(encoding="utf-8"))["held_out_sources"][
+            "per_source"
+        ]
+        rows: Rows = []
+        for fold in range(count):
+            own = [value for name, value in sources.items() if fold_of(name, count) == fold]
+            hands = sum(int(value["pictures"]) for value in own)
+            right = sum(round(float(value["accuracy"] or 0.0) * value["pictures"]) for value in own)
+            rows.append(
+                {"row": f"svm fold {fold}", "held_hands": hands, "held_accuracy": share(right, hands)}
+            )
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{card}: is no card with held-out sources ({error!r}); give --svm-card") from error
+    return rows
+
+
+def mean_and_worst(model: str, rows: Rows) -> Rows:
+    """Mean and lowest accuracy of the folds of a model."""
+    found = [value for row in rows if isinstance(value := row["held_accuracy"], float)]
+    hands = sum(value for row in rows if isinstance(value := row["held_hands"], int))
+    if not found:
+        return []
+    mean: dict[str, Cell] = {
+        "row": f"{model} mean",
+        "held_hands": hands,
+        "held_accuracy": float(np.mean(found)),
+    }
+    return [mean, {"row": f"{model} worst fold", "held_accuracy": min(found)}]

@@ -1,0 +1,285 @@
+"""Studies of reading: who is held out of which training, and the commands from pool to table."""
+
+import csv
+import json
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.benchmarks import reading_baselines, reading_study
+from lightgesture.benchmarks.study_data import (
+    held_out_subjects,
+    open_study,
+    rows_of_sources,
+    rows_without,
+    training_of,
+)
+from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
+from lightgesture.benchmarks.study_rows import card_folds, mean_and_worst
+from lightgesture.datasets import fold_of
+from lightgesture.errors import InputError
+from lightgesture.models import load_classifier
+from lightgesture.training import checkpoints
+from lightgesture.training.patch_pool import PatchPool, PoolSettings
+
+TOKENS = ("1", "5", "none")
+
+
+def draw(token, seed):
+    """uint8 (60, 60, 3): "1" an upright bar, "5" a disc, "none" a lying bar."""
+    random = np.random.default_rng(seed)
+    picture = random.normal(90, 8, (60, 60, 3))
+    rows, columns = np.mgrid[:60, :60]
+    inside = {
+        "1": (abs(columns - 30) < 7) & (abs(rows - 30) < 24),
+        "5": (columns - 30) ** 2 + (rows - 30) ** 2 < 20**2,
+        "none": (abs(rows - 30) < 7) & (abs(columns - 30) < 24),
+    }[token]
+    picture[inside] += (30, 50, 90)
+    return np.clip(picture, 0, 255).astype(np.uint8)
+
+
+@pytest.fixture
+def drawn(tmp_path):
+    """A folder of drawings: six sources of two subjects each and the one that is left out; two sources of val."""
+    folder = tmp_path / "data"
+    for split, names in (
+        ("train", [*(f"s{number}" for number in range(6)), "emre_drone"]),
+        ("val", ["v0", "v1"]),
+    ):
+        rows = []
+        for number, source in enumerate(names):
+            for index in range(6):
+                token = TOKENS[index % 3]
+                path = f"{split}/{source}_{index}.png"
+                (folder / "hands" / split).mkdir(parents=True, exist_ok=True)
+                assert cv2.imwrite(str(folder / "hands" / path), draw(token, 100 * number + index))
+                box = {"hx0": 8, "hy0": 8, "hx1": 52, "hy1": 52}
+                subject = f"p{index // 3}"
+                rows.append(
+                    {"path": path, "set": source, "token": token, "subject": subject, **box, "note": ""}
+                )
+        with (folder / "hands" / f"{split}.csv").open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.DictWriter(stream, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+    return folder
+
+
+@pytest.fixture
+def training(drawn):
+    return training_of(drawn, pool=PoolSettings(copies=1, rounds=1, rendered=0), one_in=2)
+
+
+def small_pool():
+    """Two hands of a, one of b; regions of a and of water."""
+    sources = np.array(["a", "a", "b", "a", "water"])
+    return PatchPool(
+        np.zeros((5, 4, 4, 3), np.uint8),
+        np.zeros((5, 2), np.float16),
+        np.array(["1", "5", "1", "none", "none"]),
+        sources,
+        np.array([0, 1, 2, -1, -1]),
+    )
+
+
+def test_nothing_of_a_held_out_source_is_trained_on():
+    sources = np.array(["a", "a", "b"])
+    held = np.array([True, True, False])
+    assert rows_without(small_pool(), sources, held).tolist() == [False, False, True, False, True]
+
+
+def test_of_a_person_held_out_neither_hands_nor_the_regions_of_the_source_are_trained_on():
+    sources = np.array(["a", "a", "b"])
+    held = np.array([True, False, False])
+    assert rows_without(small_pool(), sources, held).tolist() == [False, True, True, False, True]
+
+
+def test_few_sources_keep_what_shows_no_people():
+    sources = np.array(["a", "a", "b"])
+    assert rows_of_sources(small_pool(), sources, ["b"]).tolist() == [False, False, True, False, True]
+    assert rows_of_sources(small_pool(), sources, ["a", "b"]).all()
+
+
+def test_subjects_are_held_out_where_a_source_tells_them_apart():
+    sources = ["a"] * 12 + ["b"] * 3 + ["c"] * 2
+    subjects = [f"p{number % 6}" for number in range(12)] + ["", "", ""] + ["only", "only"]
+    held = held_out_subjects(sources, subjects, 5)
+    assert {subject for subject, is_held in zip(subjects, held, strict=True) if is_held} == {"p0", "p5"}
+    assert held.sum() == 4
+    assert held_out_subjects(["a", "a"], ["x", "y"], 5).tolist() == [True, False]
+
+
+def test_the_study_holds_the_manifest_without_the_left_out_people(drawn, training, tmp_path):
+    study = open_study(drawn, tmp_path / "pool", training, lambda _: None)
+    assert len(study.rows) == len(study.hands) == len(study.subjects) == 36
+    assert study.classes == TOKENS
+    assert "emre_drone" not in study.sources
+    assert set(study.subjects) == {"p0", "p1"}
+    again = open_study(drawn, tmp_path / "pool", training, lambda _: None)
+    np.testing.assert_array_equal(study.pool.patches, again.pool.patches)
+
+
+def test_a_pool_of_other_hands_is_refused(drawn, training, tmp_path):
+    open_study(drawn, tmp_path / "pool", training, lambda _: None)
+    with pytest.raises(InputError, match="holds a pool of other hands"):
+        open_study(drawn, tmp_path / "pool", replace(training, without=("s0",)), lambda _: None)
+    (tmp_path / "pool" / "patches.json").write_text('{"tokens": []}', encoding="utf-8")
+    with pytest.raises(InputError, match="holds no pool that can be read"):
+        open_study(drawn, tmp_path / "pool", training, lambda _: None)
+
+
+def test_pools_differ_in_what_their_name_says():
+    pool = PoolSettings()
+    assert POOLS[EVERYTHING](pool) == pool
+    made = {name: make(pool) for name, make in POOLS.items()}
+    assert len({repr(one) for one in made.values()}) == len(POOLS)
+    assert made["no water"].augment.light == replace(pool.augment.light, water=0.0)
+    assert replace(made["no water"].augment, light=pool.augment.light) == pool.augment
+    assert made["no rendered hands"] == replace(pool, rendered=0)
+    nothing = made[NOTHING]
+    assert (nothing.rendered, nothing.augment.rotation, nothing.augment.light.blur) == (0, 0.0, 0.0)
+    assert (nothing.copies, nothing.patch) == (pool.copies, pool.patch)
+
+
+def test_folds_of_a_card(tmp_path):
+    names = [f"source {number}" for number in range(40)]
+    held = {name: {"accuracy": 0.5, "pictures": 4} for name in names}
+    card = tmp_path / "card.json"
+    card.write_text(json.dumps({"held_out_sources": {"per_source": held}}), encoding="utf-8")
+    rows = card_folds(card, 5)
+    assert sum(row["held_hands"] for row in rows) == 160
+    assert {row["held_accuracy"] for row in rows} == {0.5}
+    mean, worst = mean_and_worst("svm", [*rows, {"held_hands": 10, "held_accuracy": 0.2}])
+    assert (mean["row"], mean["held_hands"], worst["held_accuracy"]) == ("svm mean", 170, 0.2)
+    assert mean["held_accuracy"] == pytest.approx((5 * 0.5 + 0.2) / 6)
+    card.write_text("{}", encoding="utf-8")
+    with pytest.raises(InputError, match="is no card with held-out sources"):
+        card_folds(card, 5)
+
+
+class Recorder:
+    """Stands in for the training of a row: keeps who is trained on and who is held out."""
+
+    def __init__(self):
+        self.rows = []
+
+    def __call__(self, study, name, rows, held, training, folder):
+        assert held.any()
+        assert not set(study.pool.hands[rows].tolist()) & set(np.flatnonzero(held).tolist())
+        trained = set(study.pool.sources[rows])
+        self.rows.append((name, trained, set(study.sources[held]), training))
+        return {"row": name, "sources": len(trained), "held_hands": int(held.sum()), "held_accuracy": 0.5}
+
+
+@pytest.fixture
+def study_command(monkeypatch, drawn, tmp_path):
+    """Runs a study with a recorder in place of its trainings; returns that and the JSON rows."""
+    monkeypatch.setattr(checkpoints, "need_torch", lambda: None)
+    recorder = Recorder()
+    monkeypatch.setattr(reading_study, "fit_row", recorder)
+    out = tmp_path / "rows.json"
+
+    def run(kind, *more):
+        pool = ("--pool", str(tmp_path / "pool"), "--copies", "1", "--rendered", "0")
+        assert reading_study.main([kind, "--data", str(drawn), *pool, "--out", str(out), *more]) == 0
+        return recorder.rows, json.loads(out.read_text(encoding="utf-8"))["rows"]
+
+    return run
+
+
+def test_each_source_is_held_out_in_one_fold(study_command, tmp_path):
+    trained, rows = study_command("folds", "--svm-card", str(tmp_path / "none.json"))
+    assert len(trained) == len({fold_of(f"s{n}", 5) for n in range(6)}) < 5
+    assert sorted(source for _, _, held, _ in trained for source in held) == [f"s{n}" for n in range(6)]
+    for _, seen, held, _ in trained:
+        assert not seen & held
+    assert [row["row"] for row in rows][-2:] == ["cnn mean", "cnn worst fold"]
+
+
+def test_subjects_of_every_source_are_held_out(study_command):
+    ((_, seen, held, _),), rows = study_command("subjects")
+    assert seen >= held == {f"s{n}" for n in range(6)}
+    assert rows[0]["held_hands"] == 18
+
+
+def test_sources_grow_and_stay(study_command):
+    trained, _ = study_command("sources", "--counts", "1", "2")
+    names = [name for name, *_ in trained]
+    assert names[:2] == ["1 sources", "2 sources"]
+    first, second, every = (seen for _, seen, _, _ in trained)
+    assert len(first) == 1
+    assert first < second < every
+
+
+@pytest.mark.parametrize(
+    ("kind", "names"),
+    [("sizes", ["small", "medium", "large"]), ("outline", ["patch alone", "patch and outline"])],
+)
+def test_nets_differ_in_one_thing(study_command, kind, names):
+    trained, rows = study_command(kind)
+    assert [row["row"] for row in rows] == names
+    assert len({(training.size, training.contours) for *_, training in trained}) == len(names)
+    assert len({(tuple(sorted(seen)), tuple(sorted(held))) for _, seen, held, _ in trained}) == 1
+
+
+def test_each_alteration_has_a_pool_of_its_own(study_command, tmp_path):
+    trained, _ = study_command("augmentation", "--only", "everything", "--only", "no mirror")
+    assert [training.pool.augment.mirror for *_, training in trained] == [0.5, 0.0]
+    drawn_pools = sorted(path.parent.parent.name for path in tmp_path.rglob("studies/**/patches.json"))
+    assert drawn_pools == ["everything", "no_mirror"]
+
+
+@pytest.mark.slow
+def test_a_net_is_trained_and_scored(drawn, tmp_path, capsys):
+    pytest.importorskip("torch")
+    arguments = ["--data", str(drawn), "--pool", str(tmp_path / "pool"), "--copies", "2", "--rendered", "0"]
+    more = ["--steps", "30", "--size", "small", "--out", str(tmp_path / "rows.json")]
+    for _ in range(2):
+        assert reading_study.main(["subjects", *arguments, *more, "--svm", "--centres", "20"]) == 0
+    cnn, svm = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["rows"]
+    assert (cnn["held_hands"], cnn["val_hands"], cnn["sources"]) == (12, 8, 6)
+    assert cnn["val_accuracy"] > 0.7
+    assert svm["val_accuracy"] == 1.0
+    assert capsys.readouterr().err.count("step 30 of 30") == 1
+
+
+def test_contours_become_a_model_file(drawn, tmp_path, capsys):
+    out = tmp_path / "contours.npz"
+    arguments = ["--data", str(drawn), "--out", str(out), "--copies", "1", "--centres", "40"]
+    assert reading_baselines.main(["contours", *arguments, "--json", str(tmp_path / "rows.json")]) == 0
+    classifier = load_classifier(out)
+    assert classifier.classes == TOKENS
+    rows = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["rows"]
+    assert rows[0]["model"] == "contours"
+    assert rows[0]["hands"] == 8
+    assert rows[0]["accuracy"] == 1.0
+    assert "wrote" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_the_papers_network_is_trained_and_scored(drawn, tmp_path):
+    pytest.importorskip("torch")
+    pool = ("--pool", str(tmp_path / "pool"), "--copies", "4", "--rendered", "0", "--steps", "40")
+    rows = tmp_path / "rows.json"
+    assert reading_baselines.main(["paper", "--data", str(drawn), *pool, "--json", str(rows)]) == 0
+    first = json.loads(rows.read_text(encoding="utf-8"))["rows"][0]
+    assert (first["model"], first["hands"]) == ("paper's network", 8)
+    assert first["accuracy"] > 0.7
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "words"),
+    [
+        (["folds", "--pool", "p", "--data", "nowhere"], 1, "nowhere: no such folder"),
+        (["subjects", "--pool", "p", "--data", "nowhere"], 1, "nowhere: no such folder"),
+    ],
+)
+def test_wrong_use_is_one_line(arguments, status, words, capsys, monkeypatch):
+    monkeypatch.setattr(checkpoints, "need_torch", lambda: None)
+    assert reading_study.main(arguments) == status
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.err.count("\n") == 1

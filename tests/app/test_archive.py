@@ -1,0 +1,259 @@
+"""Many inputs: what is done again, who may write, worker processes, order, pictures named one by one."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import filelock
+import pytest
+
+from lightgesture.archive.board import Board, table
+from lightgesture.archive.folder import LOCK, MANIFEST
+from lightgesture.archive.messages import Advanced, Done, Opened, Outcome, Printed
+from lightgesture.archive.tasks import make_tasks
+from lightgesture.errors import ExitStatus
+
+TIMES = ("ms_per_frame", "stages_ms")
+
+
+def without_times(path):
+    """The content of a file of results; of records all but the fields that tell how long they took."""
+    if path.suffix != ".jsonl":
+        return path.read_bytes()
+    records = [json.loads(line) for line in path.read_text("utf-8").splitlines()]
+    return [{key: value for key, value in record.items() if key not in TIMES} for record in records]
+
+
+def results(folder):
+    return {
+        path.name: without_times(path)
+        for path in folder.iterdir()
+        if not path.name.startswith(".lightgesture")
+    }
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "lightgesture", "decode", *map(str, arguments)]
+
+
+@pytest.fixture
+def archive(run, make_video, tmp_path, fake):
+    """Decodes two videos to a folder and tells which of them were decoded."""
+    videos = [make_video("a.avi", 4), make_video("b.avi", 3)]
+
+    def call(*options):
+        fake.made.clear()
+        result = run("decode", *videos, "--out", tmp_path / "out", *options)
+        call.result = result
+        return [os.path.basename(pipeline.source) for pipeline in fake.made if pipeline.source]
+
+    call.videos, call.out = videos, tmp_path / "out"
+    return call
+
+
+def test_what_is_done_is_not_done_again(archive):
+    assert archive() == ["a.avi", "b.avi"]
+    before = results(archive.out)
+    assert archive() == []
+    assert archive.result.status == ExitStatus.OK
+    assert archive.result.out == []
+    assert archive.result.err[0] == "lightgesture: 2 of 2 inputs done before and unchanged; not decoded again"
+    assert archive.result.err[2].split()[1:] == ["4", "1", "1", "-", "done", "before"]
+    assert results(archive.out) == before
+    assert archive("--quiet", "--jobs", 2, "--json") == [], "these change no file"
+
+
+@pytest.mark.parametrize(
+    "options", [["--hold", "3"], ["--frames"], ["--mirrored"], ["--grammar", "other.toml"]]
+)
+def test_another_configuration_does_all_again(archive, options):
+    archive()
+    assert archive(*options) == ["a.avi", "b.avi"]
+
+
+def test_a_changed_model_does_all_again(archive, tmp_path):
+    model = tmp_path / "model.npz"
+    model.write_bytes(b"one")
+    archive("--model", model)
+    assert archive("--model", model) == []
+    model.write_bytes(b"two")
+    assert archive("--model", model) == ["a.avi", "b.avi"]
+
+
+def test_a_changed_input_and_a_lost_result_are_done_again(archive, make_video):
+    archive()
+    make_video("a.avi", 5)
+    assert archive() == ["a.avi"]
+    (archive.out / "b.vtt").unlink()
+    assert archive() == ["b.avi"]
+    assert archive() == []
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "{", "[]", '{"format": 1, "inputs": {"a": 1}}', '{"format": 99, "inputs": {}}', "[" * 9999],
+)
+def test_a_damaged_manifest_does_all_again(archive, content):
+    archive()
+    (archive.out / MANIFEST).write_text(content)
+    assert archive() == ["a.avi", "b.avi"]
+    assert archive() == []
+
+
+def test_a_failed_input_is_tried_again(archive, make_video):
+    video = make_video("a.avi", 60)
+    video.write_bytes(video.read_bytes()[: video.stat().st_size // 2])
+    archive()
+    assert (archive.out / "a.jsonl").exists()
+    assert archive() == ["a.avi"]
+    assert archive.result.status == ExitStatus.SOME_FAILED
+
+
+def test_results_of_another_input_are_not_overwritten(run, make_video, tmp_path):
+    out = tmp_path / "out"
+    run("decode", make_video("x/dive.avi", 4), "--out", out)
+    before = results(out)
+    other = make_video("y/dive.avi", 5)
+    result = run("decode", other, "--out", out)
+    assert result.status == ExitStatus.SOME_FAILED
+    assert f"{other}: {out / 'dive'}.* are the results of {tmp_path / 'x' / 'dive.avi'}" in result.err[0]
+    assert results(out) == before
+
+
+def test_two_runs_into_one_folder(archive):
+    archive()
+    with filelock.FileLock(archive.out / LOCK):
+        assert archive() == []
+    assert archive.result.status == ExitStatus.USAGE
+    assert archive.result.err == [
+        f"lightgesture: {archive.out}: another run writes into this folder; "
+        "wait for its end or name another --out"
+    ]
+    archive.videos[0].touch()
+    assert archive() == ["a.avi"], "the lock is free again"
+
+
+def test_what_a_killed_run_left_is_removed(archive):
+    archive.out.mkdir()
+    (archive.out / f".{'0' * 32}.part").touch()
+    (archive.out / "mine.part").touch()
+    archive()
+    assert sorted(name for name in os.listdir(archive.out) if name.endswith(".part")) == ["mine.part"]
+
+
+def test_pictures_of_one_folder_are_one_input(run, make_folder, make_video, fake):
+    folder = make_folder("frames", 12)
+    result = run("decode", make_video("a.avi", 2), folder / "1*.png", "--json")
+    assert (result.status, fake.made[-1].source) == (ExitStatus.OK, str(folder))
+    assert [index for index, _, _ in fake.made[-1].seen] == [0, 1, 2, 3]
+    result = run("decode", *sorted(folder.iterdir()), "--fps", 4)
+    assert [time_s for _, time_s, _ in fake.made[-1].seen][:3] == [0.0, 0.25, 0.5]
+    assert len(fake.made[-1].seen) == 12
+
+
+def test_tasks_of_pictures(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tasks = make_tasks(["f/10.png", "a.mp4", "f/9.png", "g/1.png", "1.png", "2.png"])
+    assert [(task.path, task.stem, task.pictures) for task in tasks] == [
+        ("f", "f", ("9.png", "10.png")),
+        ("a.mp4", "a", ()),
+        ("g/1.png", "1", ()),
+        (".", tmp_path.name, ("1.png", "2.png")),
+    ]
+    assert [task.place for task in tasks] == [0, 1, 2, 3]
+
+
+def test_a_single_picture_is_told_where_it_belongs(run, make_picture):
+    assert "use `lightgesture recognize`" in run("decode", make_picture("a.png")).err[0]
+
+
+def test_results_come_in_the_order_of_the_inputs(capsys):
+    board = Board(make_tasks(["a", "b", "c"]), quiet=True)
+    with board:
+        board.hear(Printed(1, ("b1",)))
+        board.hear(Done(2, Outcome("failed", "c: broken")))
+        board.hear(Printed(0, ("a1",)))
+        assert capsys.readouterr().out == "a1\n", "the first one's at once"
+        board.hear(Done(1, Outcome("ok")))
+        assert capsys.readouterr() == ("", "")
+        board.hear(Done(0, Outcome("ok")))
+    assert capsys.readouterr() == ("b1\n", "lightgesture: c: broken\n")
+
+
+def test_progress_has_a_line_for_each_running_input_and_one_for_all(capsys, monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    with Board(make_tasks(["a.mp4", "b\n.mp4"]), quiet=False) as board:
+        board.hear(Opened(1, 100))
+        board.hear(Advanced(1, 25))
+        board.hear(Opened(0, 300))
+        board.hear(Printed(0, ("result",)))
+        board.hear(Done(1, Outcome("ok", frames=100)))
+        board.hear(Done(0, Outcome("ok", frames=300)))
+    out, err = capsys.readouterr()
+    assert out == "result\n"
+    for text in ("all inputs", "a.mp4", r"b\n.mp4", "/400", "/100"):
+        assert text in err
+
+
+def test_table():
+    tasks = make_tasks(["a.mp4", "line\nfeed.mp4"])
+    outcomes = {0: Outcome("ok", None, 300, 2, 1, seconds=2.0), 1: Outcome("failed", "broken")}
+    assert table(tasks, outcomes) == [
+        "input           frames  instructions  rejected  frames/s  status",
+        "a.mp4              300             2         1     150.0  ok",
+        "line\\nfeed.mp4       0             0         0         -  failed",
+        "2 inputs           300             2         1         -  1 failed",
+    ]
+
+
+@pytest.mark.parametrize("options", [["--jobs", "0"], ["--jobs", "some"], ["--annotate"], ["--plot"]])
+def test_wrong_use(run, make_video, options):
+    result = run("decode", make_video(), *options)
+    assert (result.status, len(result.err)) == (ExitStatus.USAGE, 1)
+
+
+@pytest.mark.parametrize(("option", "module"), [("annotate", "av"), ("plot", "matplotlib")])
+def test_an_extra_that_is_not_there(run, make_video, tmp_path, monkeypatch, option, module):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    result = run("decode", make_video(), f"--{option}", "--out", tmp_path / "out")
+    assert result.status == ExitStatus.USAGE
+    assert f"--{option} needs" in result.err[0]
+    assert "pip install 'lightgesture[" in result.err[0]
+
+
+@pytest.mark.slow
+def test_termination_leaves_nothing_half_written(make_folder, tmp_path):
+    """A long input, so that the signal comes in its midst; by one process and by workers."""
+    folder = make_folder("frames", 200)
+    for jobs, inputs in ((1, [folder]), (2, [folder, make_folder("more", 200)])):
+        out = tmp_path / f"out{jobs}"
+        process = subprocess.Popen(
+            command(*inputs, "--jobs", jobs, "--out", out), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL
+        )
+        wait_for(lambda out=out: len(list(out.glob(".*.part"))) >= 3)
+        process.terminate()
+        _, err = process.communicate(timeout=60)
+        assert process.returncode == ExitStatus.INTERRUPTED
+        assert err == b"lightgesture: interrupted; the results of finished inputs are kept\n"
+        assert os.listdir(out) == [LOCK]
+
+
+@pytest.mark.slow
+def test_workers_die_with_their_parent(make_folder, tmp_path):
+    inputs = [make_folder("frames", 200), make_folder("more", 200)]
+    out = tmp_path / "out"
+    process = subprocess.Popen(command(*inputs, "--jobs", 2, "--out", out), stderr=subprocess.DEVNULL)
+    wait_for(lambda: len(list(out.glob(".*.part"))) >= 6)
+    process.send_signal(signal.SIGKILL)
+    process.wait(timeout=60)
+    wait_for(lambda: not list(out.glob(".*.part")))  # they clean up, then they are gone
+
+
+def wait_for(condition, seconds=120.0):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "never came about"
+        time.sleep(0.02)

@@ -32,10 +32,10 @@ def run_on_cluster(
 
     UsageError: Dask is not there, no scheduler answers, or a worker met one.
     """
-    from dask import distributed
-
     settings = _absolute(settings)
     with _connect(address) as client:
+        from dask.distributed import as_completed
+
         run = uuid.uuid4().hex
         futures = {
             client.submit(
@@ -49,7 +49,7 @@ def run_on_cluster(
             for task in tasks
         }
         try:
-            for future in distributed.as_completed(list(futures)):
+            for future in as_completed(list(futures)):
                 for message in _result(future, futures[future]):
                     hear(message)
                 future.release()

@@ -7,6 +7,7 @@ whole, after every finished input, so that a killed run loses what it was at and
 import json
 import os
 import re
+import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -104,7 +105,9 @@ def _locked(path: Path) -> Iterator[None]:
 
     lock = filelock.FileLock(path / LOCK, blocking=False)
     try:
-        lock.acquire()
+        # Where nothing can be made, a lock that cannot be made must not pass for one that another run holds.
+        with tempfile.TemporaryFile(dir=path):
+            lock.acquire()
     except filelock.Timeout:
         raise UsageError(
             f"{path}: another run writes into this folder; wait for its end or name another --out"

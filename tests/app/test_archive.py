@@ -224,32 +224,108 @@ def test_an_extra_that_is_not_there(run, make_video, tmp_path, monkeypatch, opti
     assert "pip install 'lightgesture[" in result.err[0]
 
 
-@pytest.mark.slow
-def test_termination_leaves_nothing_half_written(make_folder, tmp_path):
-    """A long input, so that the signal comes in its midst; by one process and by workers."""
-    folder = make_folder("frames", 200)
-    for jobs, inputs in ((1, [folder]), (2, [folder, make_folder("more", 200)])):
+def test_workers_give_the_same_results(run, make_video, make_folder, tmp_path):
+    """The real pipeline, by one process and by two."""
+    inputs = [make_video("a.avi", 4), tmp_path / "gone.avi", make_folder("frames", 3)]
+    found = []
+    for jobs in (1, 2):
         out = tmp_path / f"out{jobs}"
+        result = run("decode", *inputs, "--jobs", jobs, "--out", out, "--frames", "--json")
+        printed = [{**json.loads(line), **dict.fromkeys(TIMES)} for line in result.out]
+        found.append((result.status, printed, result.err[0], results(out)))
+    assert found[0] == found[1]
+    assert found[0][0] == ExitStatus.SOME_FAILED
+    assert [record["type"] for record in found[0][1]].count("frame") == 7
+
+
+def test_a_wrong_model_is_told_once_by_workers(run, make_video, tmp_path):
+    model = tmp_path / "model.npz"
+    model.write_bytes(b"no model")
+    result = run("decode", make_video("a.avi"), make_video("b.avi"), "--jobs", 2, "--model", model)
+    assert (result.status, len(result.err)) == (ExitStatus.USAGE, 1)
+    assert str(model) in result.err[0]
+
+
+def test_a_folder_that_cannot_be_written(run, make_video):
+    result = run("decode", make_video(), "--out", "/proc")
+    assert result.status == ExitStatus.USAGE
+    assert len(result.err) == 1
+    assert result.err[0].startswith("lightgesture: /proc: cannot be written (")
+
+
+@pytest.fixture
+def start(make_folder, tmp_path):
+    """Starts the command in a group of its own on long inputs and waits until `jobs` of them are at work."""
+    inputs = [make_folder(name, 200) for name in ("one", "two", "three")]
+    out = tmp_path / "out"
+
+    def call(jobs, count=3):
         process = subprocess.Popen(
-            command(*inputs, "--jobs", jobs, "--out", out), stderr=subprocess.PIPE, stdout=subprocess.DEVNULL
+            command(*inputs[:count], "--jobs", jobs, "--out", out),
+            stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
         )
-        wait_for(lambda out=out: len(list(out.glob(".*.part"))) >= 3)
-        process.terminate()
-        _, err = process.communicate(timeout=60)
-        assert process.returncode == ExitStatus.INTERRUPTED
-        assert err == b"lightgesture: interrupted; the results of finished inputs are kept\n"
-        assert os.listdir(out) == [LOCK]
+        wait_for(lambda: len(list(out.glob(".*.part"))) == 3 * jobs)
+        return process
+
+    call.out = out
+    return call
 
 
 @pytest.mark.slow
-def test_workers_die_with_their_parent(make_folder, tmp_path):
-    inputs = [make_folder("frames", 200), make_folder("more", 200)]
-    out = tmp_path / "out"
-    process = subprocess.Popen(command(*inputs, "--jobs", 2, "--out", out), stderr=subprocess.DEVNULL)
-    wait_for(lambda: len(list(out.glob(".*.part"))) >= 6)
-    process.send_signal(signal.SIGKILL)
-    process.wait(timeout=60)
-    wait_for(lambda: not list(out.glob(".*.part")))  # they clean up, then they are gone
+@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_leaves_nothing_half_written(start, jobs, stop):
+    process = start(jobs)
+    # A terminal sends Ctrl-C to the whole group, a service manager's signal may reach the parent alone.
+    if stop == signal.SIGINT:
+        os.killpg(process.pid, stop)
+    else:
+        process.send_signal(stop)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == ExitStatus.INTERRUPTED
+    assert err == "lightgesture: interrupted; the results of finished inputs are kept\n"
+    assert os.listdir(start.out) == [LOCK]
+
+
+@pytest.mark.slow
+def test_workers_die_with_their_parent(start):
+    process = start(2)
+    process.kill()
+    process.wait()
+    wait_for(lambda: os.listdir(start.out) == [LOCK])  # they clean up
+    wait_for(lambda: not _workers(process.pid, group=True))  # and are gone
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="finds the workers through /proc")
+def test_a_worker_that_dies_costs_its_own_input(start):
+    process = start(2)
+    os.kill(_workers(process.pid)[0], signal.SIGKILL)
+    _, err = process.communicate(timeout=500)
+    assert process.returncode == ExitStatus.SOME_FAILED
+    (told,) = [line for line in err.splitlines() if line.startswith("lightgesture: ")]
+    assert "the process that decoded it ended (signal 9)" in told
+    names = os.listdir(start.out)
+    assert len([name for name in names if name.endswith(".jsonl")]) == 2
+    assert not [name for name in names if name.endswith(".part")]
+
+
+def _workers(parent, group=False):
+    """Processes that were spawned by `parent`, or that are of its group, to decode."""
+    found = []
+    for place in (path for path in os.listdir("/proc") if path.isdigit()):
+        try:
+            with open(f"/proc/{place}/stat") as stat, open(f"/proc/{place}/cmdline") as line:
+                fields = stat.read().rpartition(")")[2].split()
+                is_worker = "spawn_main" in line.read()
+        except OSError:
+            continue
+        if is_worker and int(fields[2 if group else 1]) == parent:
+            found.append(int(place))
+    return sorted(found)
 
 
 def wait_for(condition, seconds=120.0):

@@ -127,7 +127,7 @@ def check_broken_off(
 def main(argv: Sequence[str] | None = None) -> int:
     """Run all checks; 0 when all hold."""
     parser = argparse.ArgumentParser(prog="lightgesture.benchmarks.archive", description=__doc__)
-    parser.add_argument("--clips", type=int, default=ArchiveSettings.clips, metavar="N", help="whole clips")
+    parser.add_argument("--clips", type=int, default=ArchiveSettings().clips, metavar="N", help="whole clips")
     parser.add_argument(
         "--keep", type=Path, metavar="DIR", help="folder of the clips, made where it is missing"
     )

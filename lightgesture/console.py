@@ -9,6 +9,9 @@ from typing import IO, Any, Self
 
 from lightgesture.errors import UsageError
 
+MAX_LABEL = 30
+"""Longest label of one of several progress bars, letters."""
+
 
 class ReaderGoneError(Exception):
     """Whoever read the results from standard output has gone, as `head` does when it has enough."""
@@ -112,7 +115,7 @@ class Bars:
         taken = {-bar.pos for bar in self._bars}
         place = next(number for number in range(len(taken) + 1) if number not in taken)
         bar = tqdm(
-            desc=one_line(label),
+            desc=_shortened(one_line(label)),
             total=total,
             unit="frame",
             leave=False,
@@ -177,6 +180,11 @@ def native_messages_muted() -> Iterator[None]:
         muted.flush()
         os.dup2(kept, 2)
         muted.close()
+
+
+def _shortened(label: str) -> str:
+    """The end of a long name: a bar beside the whole of it would have no room."""
+    return label if len(label) <= MAX_LABEL else "..." + label[3 - MAX_LABEL :]
 
 
 def drop_output() -> None:

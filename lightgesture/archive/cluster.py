@@ -49,7 +49,7 @@ def run_on_cluster(
             for task in tasks
         }
         try:
-            for future in as_completed(list(futures)):
+            for future in as_completed(list(futures), loop=client.loop):
                 for message in _result(future, futures[future]):
                     hear(message)
                 future.release()

@@ -89,7 +89,7 @@ def check_whole_run(clips: Path, out: Path, settings: ArchiveSettings, *options:
     wrong = []
     if process.returncode != ExitStatus.SOME_FAILED:
         wrong.append(f"exit status {process.returncode}, not {int(ExitStatus.SOME_FAILED)}")
-    named = [line for line in errors.splitlines() if line.startswith("lightgesture: ")]
+    named = [line for line in errors.splitlines() if line.startswith(f"lightgesture: {clips}")]
     if len(named) != len(BROKEN) or any(name not in line for name, line in zip(BROKEN, named, strict=False)):
         wrong.append(f"failures named: {named}")
     stems = {f"clip_{number}" for number in range(settings.clips)}

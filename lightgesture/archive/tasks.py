@@ -45,7 +45,7 @@ def make_tasks(inputs: Sequence[str]) -> list[Task]:
     paths: dict[str, tuple[str, ...]] = {}
     for name in inputs:
         folder = os.path.dirname(name)
-        if is_picture_name(name) and folder in groups:
+        if os.path.basename(name) in groups.get(folder, ()):
             paths.setdefault(folder or os.curdir, groups[folder])
         else:
             paths.setdefault(name, ())
@@ -60,7 +60,7 @@ def _picture_groups(inputs: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """Folder to the pictures named in it, natural order, where there are at least two."""
     found: dict[str, list[str]] = defaultdict(list)
     for name in inputs:
-        if is_picture_name(name) and not os.path.isdir(name):
+        if is_picture_name(name) and os.path.isfile(name):
             found[os.path.dirname(name)].append(os.path.basename(name))
     return {
         folder: tuple(sorted(names, key=natural_key)) for folder, names in found.items() if len(names) > 1

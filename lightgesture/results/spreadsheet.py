@@ -10,7 +10,7 @@ from lightgesture.fsm import Instruction, Rejected
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
 
-COLUMNS = (
+COLUMNS: tuple[str, ...] = (
     "type",
     "source",
     "frame",

@@ -154,16 +154,19 @@ def test_pictures_of_one_folder_are_one_input(run, make_folder, make_video, fake
     assert len(fake.made[-1].seen) == 12
 
 
-def test_tasks_of_pictures(tmp_path, monkeypatch):
+def test_tasks_of_pictures(tmp_path, monkeypatch, make_picture):
     monkeypatch.chdir(tmp_path)
-    tasks = make_tasks(["f/10.png", "a.mp4", "f/9.png", "g/1.png", "1.png", "2.png"])
+    for name in ("f/10.png", "f/9.png", "g/1.png", "1.png", "2.png"):
+        make_picture(name)
+    tasks = make_tasks(["f/10.png", "a.mp4", "f/9.png", "g/1.png", "1.png", "f/gone.png", "2.png"])
     assert [(task.path, task.stem, task.pictures) for task in tasks] == [
         ("f", "f", ("9.png", "10.png")),
         ("a.mp4", "a", ()),
         ("g/1.png", "1", ()),
         (".", tmp_path.name, ("1.png", "2.png")),
+        ("f/gone.png", "gone", ()),
     ]
-    assert [task.place for task in tasks] == [0, 1, 2, 3]
+    assert [task.place for task in tasks] == [0, 1, 2, 3, 4]
 
 
 def test_a_single_picture_is_told_where_it_belongs(run, make_picture):

@@ -13,6 +13,7 @@ from typing import NoReturn, Protocol, cast
 from lightgesture._version import __version__
 from lightgesture.console import ReaderGoneError, drop_output, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
+from lightgesture.interruption import terminated_as_interrupted
 
 COMMANDS = {
     "decode": "videos and folders of frames to instructions",
@@ -44,7 +45,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status.
 
     0: all good. 1: some inputs failed, or the reader of the results went away; the other inputs are done.
-    2: wrong usage or configuration. 130: interrupted; the results of finished inputs are kept.
+    2: wrong usage or configuration. 130: interrupted, by Ctrl-C or SIGTERM; the results of finished inputs are kept.
     """
     arguments = sys.argv[1:] if argv is None else list(argv)
     return exit_status(lambda: _run(arguments), "the results of finished inputs are kept")
@@ -56,7 +57,8 @@ def exit_status(work: Callable[[], int], interrupted: str) -> int:
     interrupted: what becomes of the results when the user interrupts.
     """
     try:
-        return work()
+        with terminated_as_interrupted():
+            return work()
     except InputError as error:
         say(str(error))
         return ExitStatus.SOME_FAILED

@@ -9,6 +9,9 @@ from typing import IO, Any, Self
 
 from lightgesture.errors import UsageError
 
+MAX_LABEL = 30
+"""Longest label of one of several progress bars, letters."""
+
 
 class ReaderGoneError(Exception):
     """Whoever read the results from standard output has gone, as `head` does when it has enough."""
@@ -25,7 +28,12 @@ def one_line(text: str) -> str:
 
 def say(text: str) -> None:
     """One message on standard error."""
-    print(one_line(f"lightgesture: {text}"), file=sys.stderr, flush=True)
+    write_message(one_line(f"lightgesture: {text}"))
+
+
+def write_message(line: str) -> None:
+    """One line as it stands on standard error."""
+    print(line, file=sys.stderr, flush=True)
 
 
 def print_line(text: str) -> None:
@@ -88,6 +96,63 @@ class Progress:
         return nullcontext() if self._bar is None else self._bar.external_write_mode(file=stream)
 
 
+class Bars:
+    """Several progress bars on standard error at once, where that is a terminal and the user wants them.
+
+    Bars come and go; a line of results or a message is printed in an `away` block, clear of them.
+    """
+
+    def __init__(self, quiet: bool) -> None:
+        self._is_shown = not quiet and sys.stderr.isatty()
+        self._bars: list[Any] = []
+
+    def add(self, label: str, total: int | None) -> Any:
+        """A new bar below the others; None where none is shown, which the other methods take too."""
+        if not self._is_shown:
+            return None
+        from tqdm import tqdm
+
+        taken = {-bar.pos for bar in self._bars}
+        place = next(number for number in range(len(taken) + 1) if number not in taken)
+        bar = tqdm(
+            desc=_shortened(one_line(label)),
+            total=total,
+            unit="frame",
+            leave=False,
+            file=sys.stderr,
+            dynamic_ncols=True,
+            position=place,
+        )
+        self._bars.append(bar)
+        return bar
+
+    def advance(self, bar: Any, count: int) -> None:
+        """So many frames more."""
+        if bar is not None:
+            bar.update(count)
+
+    def set_total(self, bar: Any, total: int) -> None:
+        """A better estimate of the frames in all."""
+        if bar is not None:
+            bar.total = max(total, bar.n)
+
+    def remove(self, bar: Any) -> None:
+        """Take a bar away."""
+        if bar is not None:
+            self._bars.remove(bar)
+            bar.close()
+
+    def away(self) -> AbstractContextManager[Any]:
+        """A block in which both streams of output are clear of bars."""
+        return self._bars[0].external_write_mode(file=sys.stderr) if self._bars else nullcontext()
+
+    def close(self) -> None:
+        """Take all away, the lowest first."""
+        for bar in reversed(self._bars):
+            bar.close()
+        self._bars.clear()
+
+
 @contextmanager
 def native_messages_muted() -> Iterator[None]:
     """Keep what FFmpeg, libpng, LiteRT and their like print by themselves off standard error.
@@ -115,6 +180,11 @@ def native_messages_muted() -> Iterator[None]:
         muted.flush()
         os.dup2(kept, 2)
         muted.close()
+
+
+def _shortened(label: str) -> str:
+    """The end of a long name: a bar beside the whole of it would have no room."""
+    return label if len(label) <= MAX_LABEL else "..." + label[3 - MAX_LABEL :]
 
 
 def drop_output() -> None:

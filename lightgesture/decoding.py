@@ -1,112 +1,114 @@
 """What `decode` does: inputs through the pipeline, records to standard output and to files.
 
-An input that fails before its first frame leaves nothing but its error line. One that fails later, a video
-that ends early, keeps what was decoded: its records and its file end with a summary whose status is "failed".
-An interrupted input leaves no file.
+`lightgesture.archive` has the parts: what an input is, who decodes it, the folder of results and what is told.
 """
 
-from collections.abc import Iterable, Sequence
-from contextlib import ExitStack
-from dataclasses import replace
+import importlib.util
+import os
+import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 
-from lightgesture.console import Progress, say
-from lightgesture.errors import ExitStatus, InputError
-from lightgesture.opening import make_debug_pictures, make_folder, open_pipeline
-from lightgesture.pipeline import Pipeline
-from lightgesture.records import Record, SummaryRecord
-from lightgesture.results import DebugPictures, JsonPrinter, TextPrinter, Writer, open_writer, output_stems
+from lightgesture.archive.board import Board, table
+from lightgesture.archive.folder import open_archive_folder
+from lightgesture.archive.messages import Done, Hear, Message, Outcome
+from lightgesture.archive.tasks import Task, make_tasks
+from lightgesture.console import one_line, say, write_message
+from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.settings import DecodeSettings
-from lightgesture.sources import Source, open_source
 
 SAMPLE = Path(__file__).with_name("data") / "sample.mp4"
 """The bundled clip, decoded where no input is named."""
 
-
-class Task(NamedTuple):
-    """One input: where it lies, what its records and its output files call it."""
-
-    path: str
-    name: str
-    stem: str
+_EXTRAS = {
+    "annotate": ("av", "PyAV", "lightgesture[av]"),
+    "plot": ("matplotlib", "matplotlib", "lightgesture[plots]"),
+}
+"""Option to the package that it needs, its name, and what to install."""
 
 
 def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
-    """Decode every input, one after the other; none: the bundled clip.
+    """Decode every input; none: the bundled clip.
 
     An input that fails is told on standard error and the others go on. UsageError: the model, the grammar
-    or an output folder is wrong.
+    or an output folder is wrong, or an option needs a package that is not there.
     """
-    if settings.out:
-        make_folder(settings.out)
-    status = ExitStatus.OK
-    for task in _tasks(inputs, settings.quiet):
-        try:
-            _decode_one(task, settings)
-        except InputError as error:
-            say(str(error))
-            status = ExitStatus.SOME_FAILED
-    return status
+    _check(settings)
+    tasks = _tasks(inputs, settings.quiet)
+    with open_archive_folder(settings) as folder:
+        known = {task.place: folder.look_up(task) for task in tasks} if folder else {}
+        with Board(tasks, settings.quiet) as board:
+
+            def hear(message: Message) -> None:
+                # Noted before it is told: what the user has seen is not done again.
+                if folder is not None and isinstance(message, Done):
+                    folder.remember(tasks[message.place], message.outcome)
+                board.hear(message)
+
+            for place, outcome in known.items():
+                if outcome is not None:
+                    board.hear(Done(place, outcome))
+            _execute([task for task in tasks if known.get(task.place) is None], settings, hear)
+    if not settings.quiet:
+        _tell(tasks, board.outcomes)
+    is_failed = any(outcome.status == "failed" for outcome in board.outcomes.values())
+    return ExitStatus.SOME_FAILED if is_failed else ExitStatus.OK
+
+
+def usable_cores() -> int:
+    """Cores that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # not on every system
+        return os.cpu_count() or 1
+
+
+def _check(settings: DecodeSettings) -> None:
+    for option, (module, name, requirement) in _EXTRAS.items():
+        if not getattr(settings, option):
+            continue
+        if not settings.out:
+            raise UsageError(
+                f"--{option}: its file lies beside the other results; name a folder with --out DIR"
+            )
+        if importlib.util.find_spec(module) is None:
+            raise UsageError(f"--{option} needs {name}; pip install '{requirement}'")
 
 
 def _tasks(inputs: Sequence[str], quiet: bool) -> list[Task]:
     if inputs:
-        return [Task(path, path, stem) for path, stem in zip(inputs, output_stems(inputs), strict=True)]
+        return make_tasks(inputs)
     if not quiet:
         say("no input named; decoding the bundled clip")
-    return [Task(str(SAMPLE), SAMPLE.name, SAMPLE.stem)]
+    return [Task(0, str(SAMPLE), SAMPLE.name, SAMPLE.stem)]
 
 
-def _decode_one(task: Task, settings: DecodeSettings) -> None:
-    debug = make_debug_pictures(settings, task.stem)
-    pipeline = open_pipeline(settings, task.name, debug)
-    with ExitStack() as stack:
-        source = stack.enter_context(open_source(task.path, settings.fps))
-        progress = stack.enter_context(Progress(task.name, source.frame_count, "frame", settings.quiet))
-        printer = JsonPrinter if settings.as_json else TextPrinter
-        writers: list[Writer] = [printer(progress.print_line, task.name)]
-        if settings.out:
-            writers.append(stack.enter_context(open_writer(Path(settings.out) / f"{task.stem}.jsonl")))
-        failure = _process(source, pipeline, debug, progress, writers)
-    if failure is not None:
-        raise failure
+def _execute(tasks: Sequence[Task], settings: DecodeSettings, hear: Hear) -> None:
+    """Here, in worker processes, or on a cluster."""
+    encoding = sys.stdout.encoding or "utf-8"
+    jobs = min(settings.jobs or usable_cores(), len(tasks))
+    if not tasks:
+        return
+    if settings.cluster:
+        from lightgesture.archive.cluster import run_on_cluster
+
+        run_on_cluster(tasks, settings, encoding, settings.cluster, hear)
+    elif jobs > 1:
+        from lightgesture.archive.workers import run_in_processes
+
+        run_in_processes(tasks, settings, encoding, jobs, hear)
+    else:
+        from lightgesture.archive.runner import Runner
+
+        runner = Runner(settings, encoding)
+        for task in tasks:
+            hear(Done(task.place, runner.run(task, hear)))
 
 
-def _process(
-    source: Source,
-    pipeline: Pipeline,
-    debug: DebugPictures | None,
-    progress: Progress,
-    writers: Sequence[Writer],
-) -> InputError | None:
-    """Run a source to its end; what ended it early, if at least one frame was decoded before."""
-    failure = None
-    is_begun = False
-    try:
-        for frame in source:
-            if debug is not None:
-                debug.select(frame.time_s)
-            _write(pipeline.process(frame.image, frame.time_s, frame.index), writers)
-            progress.advance()
-            is_begun = True
-    except InputError as error:
-        if not is_begun:
-            raise
-        failure = error
-    _write(_finish(pipeline, is_failed=failure is not None), writers)
-    return failure
-
-
-def _finish(pipeline: Pipeline, is_failed: bool) -> Iterable[Record]:
-    for record in pipeline.finish():
-        if is_failed and isinstance(record, SummaryRecord):
-            yield replace(record, status="failed")
-        else:
-            yield record
-
-
-def _write(records: Iterable[Record], writers: Sequence[Writer]) -> None:
-    for record in records:
-        for writer in writers:
-            writer.write(record)
+def _tell(tasks: Sequence[Task], outcomes: dict[int, Outcome]) -> None:
+    before = sum(outcome.status == "done before" for outcome in outcomes.values())
+    if before:
+        say(f"{before} of {len(tasks)} inputs done before and unchanged; not decoded again")
+    if len(tasks) > 1:
+        for line in table(tasks, outcomes):
+            write_message(one_line(line))

@@ -5,8 +5,10 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
 from dataclasses import replace
 from statistics import median, quantiles
+from typing import Self
 
 import numpy as np
 
@@ -62,7 +64,7 @@ class StageClock:
 
 
 class Pipeline:
-    """Decodes one stream of frames; make another for another stream.
+    """Decodes one stream of frames; make another for another stream, or take `for_stream`.
 
     model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
     see `features.selector`. profile: path of a colour profile of the diver's hands, which replaces the map of
@@ -87,14 +89,29 @@ class Pipeline:
         frames: bool = True,
         debug: PictureSink | None = None,
     ) -> None:
-        self._source, self._frames, self._mirrored, self._debug = source, frames, mirrored, debug
+        self._frames, self._mirrored = frames, mirrored
         self._colour = ColourStage(profile=None if profile is None else load_profile(profile))
         self._regions = RegionStage(selector)
-        self._tracks = TrackStage(selection=self._regions.settings)
         self._reading = ReadingStage(load_classifier(model))
-        self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
-        self._clock = StageClock()
+        self._grammar, self._hold = load_grammar(grammar), hold
         self._one_thread = OneBlasThread()
+        self._begin(source, debug)
+
+    def for_stream(self, source: str | None, debug: PictureSink | None = None) -> Self:
+        """Another pipeline of the same settings, for another stream, with what this one has loaded.
+
+        The two must not run in several threads at once.
+        """
+        other = copy(self)
+        other._begin(source, debug)
+        return other
+
+    def _begin(self, source: str | None, debug: PictureSink | None) -> None:
+        """Everything that remembers the stream."""
+        self._source, self._debug = source, debug
+        self._tracks = TrackStage(selection=self._regions.settings)
+        self._decoder = Decoder(self._grammar, hold=self._hold, source=source)
+        self._clock = StageClock()
         self._index = 0
         self._processed = 0
         self._seconds = 0.0

@@ -23,6 +23,9 @@ DEFAULT_FPS = 30.0
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""
 
+MAX_JOBS = 1024
+"""Most worker processes."""
+
 MAX_FPS = 1000.0
 """Highest rate of a folder of frames, frames a second."""
 
@@ -76,8 +79,29 @@ class DecodeSettings(BaseModel):
     frames: bool = _option(False, "a record for every frame too", only=STREAMS)
     out: str | None = _option(
         None,
-        "write DIR/<input stem>.jsonl with the records of each input",
+        "write DIR/<input stem>.jsonl, .csv and .vtt (subtitles) of each input; what is there and up to date stays",
         "DIR",
+        only=(DECODE,),
+        min_length=1,
+    )
+    annotate: bool = _option(
+        False, "write DIR/<input stem>.mp4 too, with hands, sentence and outcome drawn in", only=(DECODE,)
+    )
+    plot: bool = _option(
+        False, "write DIR/<input stem>.png too, a picture of signs and instructions over time", only=(DECODE,)
+    )
+    jobs: int | None = _option(
+        None,
+        "videos decoded at once, each by a process of its own (default: the cores)",
+        "N",
+        only=(DECODE,),
+        ge=1,
+        le=MAX_JOBS,
+    )
+    cluster: str | None = _option(
+        None,
+        "decode on the workers of the Dask scheduler at this address",
+        "ADDRESS",
         only=(DECODE,),
         min_length=1,
     )

@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -10,6 +9,8 @@ from typing import Protocol, TextIO
 
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
+from lightgesture.results.spreadsheet import open_spreadsheet
+from lightgesture.results.subtitles import open_subtitles
 
 _SEPARATORS = (",", ":")
 
@@ -43,15 +44,15 @@ class JsonLinesWriter:
 
 
 class JsonPrinter:
-    """Prints one JSON object a line through `print_line`; `name` stands in every record already."""
+    """Prints one JSON object a line through `print_line`; encoding: that of the stream."""
 
-    def __init__(self, print_line: Callable[[str], None], name: str) -> None:
+    def __init__(self, print_line: Callable[[str], None], encoding: str) -> None:
         self._print_line = print_line
-        self.name = name
+        self._encoding = encoding
 
     def write(self, record: Record) -> None:
         """Print a record."""
-        self._print_line(to_json_line(record, sys.stdout.encoding or "utf-8"))
+        self._print_line(to_json_line(record, self._encoding))
 
 
 @contextmanager
@@ -61,13 +62,17 @@ def open_json_lines(path: Path) -> Iterator[Writer]:
         yield JsonLinesWriter(stream)
 
 
-WRITERS: dict[str, Callable[[Path], AbstractContextManager[Writer]]] = {".jsonl": open_json_lines}
-"""Suffix of a record file to what opens it for writing."""
+WRITERS: dict[str, Callable[[Path, str], AbstractContextManager[Writer]]] = {
+    ".jsonl": lambda path, name: open_json_lines(path),  # noqa: ARG005 - every record has the name already
+    ".csv": lambda path, name: open_spreadsheet(path),  # noqa: ARG005 - likewise
+    ".vtt": open_subtitles,
+}
+"""Suffix of a record file to what opens it for writing, given its path and the name of the input."""
 
 
-def open_writer(path: str | os.PathLike[str]) -> AbstractContextManager[Writer]:
-    """Open the writer that belongs to the suffix of `path`; ValueError: there is none."""
+def open_writer(path: str | os.PathLike[str], name: str) -> AbstractContextManager[Writer]:
+    """Open the writer that belongs to the suffix of `path`; ValueError: there is none. name: of the input."""
     place = Path(path)
     if place.suffix not in WRITERS:
         raise ValueError(f"{place}: no writer for {place.suffix!r}; known are {', '.join(WRITERS)}")
-    return WRITERS[place.suffix](place)
+    return WRITERS[place.suffix](place, name)

@@ -1,7 +1,7 @@
 """A folder of frames, in natural order of their names."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from types import TracebackType
 from typing import Self
 
@@ -12,17 +12,17 @@ from lightgesture.sources.pictures import is_picture_name, read_picture
 
 
 class FrameFolder:
-    """The pictures of one folder; other files in it and folders below it are passed over.
+    """The pictures of one folder, or those that `files` names; other files and folders in it are passed over.
 
     A folder has no container's time stamps: the time of a frame is its index divided by `fps`. A picture
     that cannot be read is left out and its index and time with it; after the last one InputError tells
     how many were left out and which was the first.
     """
 
-    def __init__(self, path: str, fps: float) -> None:
+    def __init__(self, path: str, fps: float, files: Sequence[str] = ()) -> None:
         self.name = path
         self._fps = fps
-        self._files = _list_pictures(path)
+        self._files = list(files) or _list_pictures(path)
         self.frame_count: int | None = len(self._files)
 
     def __enter__(self) -> Self:

@@ -40,6 +40,9 @@ class FakePipeline:
         self.seen = []
         FakePipeline.made.append(self)
 
+    def for_stream(self, source, debug=None):
+        return FakePipeline(source=source, frames=self.frames, debug=debug, **self.options)
+
     def process(self, image_bgr, time_s, index=None):
         assert image_bgr.dtype == np.uint8
         assert image_bgr.ndim == 3
@@ -108,6 +111,7 @@ def fake(monkeypatch):
     monkeypatch.setattr(FakePipeline, "made", [])
     monkeypatch.setattr(FakePipeline, "interrupt_at", None)
     monkeypatch.setattr("lightgesture.opening.Pipeline", FakePipeline)
+    monkeypatch.setattr("lightgesture.decoding.usable_cores", lambda: 1)  # worker processes have the real one
     return FakePipeline
 
 

@@ -76,7 +76,7 @@ def test_reader_that_has_gone(make_video, monkeypatch, capsys, tmp_path):
     monkeypatch.undo()
     assert status == ExitStatus.SOME_FAILED
     assert capsys.readouterr().err == ""
-    assert list((tmp_path / "out").iterdir()) == []
+    assert [each.name for each in (tmp_path / "out").iterdir()] == [".lightgesture.lock"]
 
 
 class FullDisk(io.StringIO):

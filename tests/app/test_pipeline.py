@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from lightgesture import Pipeline
+from lightgesture.decoding import SAMPLE
 from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.models import load_classifier
 from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, SummaryRecord
+from lightgesture.sources import open_source
 
 CLASSES = ("0", "5", "none")
 
@@ -53,6 +56,28 @@ def test_frames_that_are_left_out_of_the_index_are_not_counted():
     for index in (0, 2, 9):
         pipeline.process(np.zeros((48, 64, 3), np.uint8), index / 30, index)
     assert pipeline.finish()[-1].frames == 3
+
+
+def test_a_pipeline_for_another_stream_loads_nothing_and_remembers_nothing(monkeypatch):
+    loaded = []
+
+    def load(model):
+        loaded.append(model)
+        return load_classifier(model)
+
+    monkeypatch.setattr("lightgesture.pipeline.load_classifier", load)
+    with open_source(SAMPLE) as source:
+        frames = [frame for frame, _ in zip(source, range(24), strict=False)]
+    first = Pipeline(source="first", hold=5)
+    seen = [first.process(frame.image, frame.time_s) for frame in frames]
+    again = first.for_stream("first")
+    assert [again.process(frame.image, frame.time_s) for frame in frames] == seen
+    assert any(record.hands for records in seen for record in records if isinstance(record, FrameRecord))
+    other = first.for_stream("other")
+    assert other.finish()[-1].frames == 0
+    assert other.process(frames[0].image, 0.0)[0].source == "other"
+    assert first.finish()[-1].frames == again.finish()[-1].frames == 24
+    assert loaded == ["svm"]
 
 
 @pytest.mark.parametrize("frames", [True, False])

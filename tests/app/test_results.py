@@ -1,32 +1,124 @@
 """Writers, names of output files, words for people."""
 
+import csv
 import json
 
 import pytest
+import webvtt
 
 from lightgesture.errors import UsageError
-from lightgesture.fsm import Notice, State, Word
+from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
 from lightgesture.records import SummaryRecord
 from lightgesture.results import WRITERS, describe, open_writer, output_stems, to_json_line
 from lightgesture.results.atomic import replacing
+from lightgesture.results.spreadsheet import COLUMNS
 
 
 def notice(source, detail="3,left is no word"):
     return Notice(source=source, frame=150, time_s=5.0, reason="unknown_pair", detail=detail)
 
 
-READERS = {".jsonl": lambda path: [json.loads(line) for line in path.read_text("utf-8").splitlines()]}
+def rejected(time_s, text="STOP EXEC 5 GO", detail="no program 5", source="a.mp4"):
+    return Rejected(source=source, frame=1, time_s=time_s, reason="limit", text=text, detail=detail)
 
 
-@pytest.mark.parametrize("suffix", WRITERS)
-def test_round_trip(tmp_path, suffix):
-    path = tmp_path / "new" / f"ö{suffix}"
-    written = [notice("a.mp4"), notice('två "dykare"\n.mp4', detail="ダ"), notice("\udcff")]
-    with open_writer(path) as writer:
-        for record in written:
+def instruction(time_s, text="STOP HOVER 50 GO", source="a.mp4"):
+    return Instruction(
+        source=source,
+        frame=131,
+        time_s=time_s,
+        start_frame=4,
+        start_time_s=0.13,
+        text=text,
+        kind="task",
+        action="HOVER",
+        duration_s=50,
+        program=None,
+        parameter=None,
+        change=None,
+        confidence=0.95,
+        words=("STOP", "HOVER", "5", "AND", "0", "GO"),
+    )
+
+
+def write(path, records, name="a.mp4"):
+    with open_writer(path, name) as writer:
+        for record in records:
             writer.write(record)
         assert not path.exists()
-    assert READERS[suffix](path) == [record.to_dict() for record in written]
+    return path
+
+
+def read_csv(path):
+    with open(path, encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_json_round_trip(tmp_path):
+    written = [notice("a.mp4"), notice('två "dykare"\n.mp4', detail="ダ"), notice("\udcff")]
+    path = write(tmp_path / "new" / "ö.jsonl", written)
+    lines = path.read_text("utf-8").splitlines()
+    assert [json.loads(line) for line in lines] == [record.to_dict() for record in written]
+
+
+def test_spreadsheet(tmp_path):
+    rows = read_csv(write(tmp_path / "a.csv", [notice("a"), instruction(4.37), rejected(5.0)]))
+    assert [row["type"] for row in rows] == ["instruction", "rejected"]
+    assert list(rows[0]) == list(COLUMNS)
+    assert (rows[0]["text"], rows[0]["words"]) == ("STOP HOVER 50 GO", "STOP HOVER 5 AND 0 GO")
+    assert (rows[0]["duration_s"], rows[0]["program"], rows[1]["kind"]) == ("50", "", "")
+    assert set(instruction(1.0).to_dict()) | set(rejected(1.0).to_dict()) == set(COLUMNS)
+
+
+def test_spreadsheet_without_a_record_has_its_names(tmp_path):
+    assert write(tmp_path / "a.csv", []).read_text() == ",".join(COLUMNS) + "\n"
+
+
+@pytest.mark.parametrize(
+    "source", ['=HYPERLINK("http://x","y").mp4', "+1.mp4", "-1", "@SUM(1)", "\t=1", "\uff1d1"]
+)
+def test_spreadsheet_runs_no_formula(tmp_path, source):
+    records = [instruction(-1.5, source=source), rejected(1.0, source="a\n,b\udcff", detail="=1")]
+    first, second = read_csv(write(tmp_path / "a.csv", records))
+    assert first["source"] == "'" + source
+    assert first["time_s"] == "-1.5", "a number stays a number"
+    assert (second["source"], second["detail"]) == ("a\n,b\\udcff", "'=1")
+
+
+def test_subtitles(tmp_path):
+    records = [notice("a"), instruction(4.37), rejected(5.0), rejected(5.2), instruction(3599.9996)]
+    captions = webvtt.read(str(write(tmp_path / "a.vtt", records))).captions
+    assert [(each.start, each.end) for each in captions] == [
+        ("00:00:04.370", "00:00:05.370"),  # at least a second
+        ("00:00:05.000", "00:00:06.000"),
+        ("00:00:05.200", "00:00:09.200"),  # at most four
+        ("01:00:00.000", "01:00:04.000"),
+    ]
+    assert captions[0].raw_text == "STOP HOVER 50 GO"
+    assert captions[1].raw_text == "<i>rejected:</i> STOP EXEC 5 GO (no program 5)"
+
+
+def test_subtitles_of_a_clock_that_runs_back(tmp_path):
+    captions = webvtt.read(str(write(tmp_path / "a.vtt", [instruction(9.0), instruction(-2.0)]))).captions
+    assert [(each.start, each.end) for each in captions] == [
+        ("00:00:09.000", "00:00:10.000"),
+        ("00:00:09.000", "00:00:13.000"),
+    ]
+
+
+def test_subtitles_escape_hostile_names_and_texts(tmp_path):
+    hostile = "a --> b\n\n00:00:00.000 --> 99:00:00.000\n<script>&\udcff"
+    path = write(tmp_path / "a.vtt", [instruction(1.0, hostile), rejected(9.0, detail=hostile)], hostile)
+    captions = webvtt.read(str(path)).captions
+    assert [each.start for each in captions] == ["00:00:01.000", "00:00:09.000"]
+    text = path.read_text("utf-8")
+    assert text.count("-->") == 2
+    assert "<script>" not in text
+    assert r"a --&gt; b\n\n00:00:00.000 --&gt; 99:00:00.000\n&lt;script&gt;&amp;\udcff" in text
+
+
+def test_subtitles_without_a_cue_are_a_file_still(tmp_path):
+    assert webvtt.read(str(write(tmp_path / "a.vtt", []))).captions == []
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
@@ -36,7 +128,7 @@ def test_nothing_half_written(tmp_path, suffix, error):
     path.write_text("as it was")
 
     def fail():
-        with open_writer(path) as writer:
+        with open_writer(path, "a.mp4") as writer:
             writer.write(notice("a.mp4"))
             raise error
 
@@ -47,8 +139,8 @@ def test_nothing_half_written(tmp_path, suffix, error):
 
 
 def test_suffix_without_a_writer(tmp_path):
-    with pytest.raises(ValueError, match=r"no writer for '\.doc'; known are \.jsonl"):
-        open_writer(tmp_path / "a.doc")
+    with pytest.raises(ValueError, match=r"no writer for '\.doc'; known are \.jsonl, \.csv, \.vtt"):
+        open_writer(tmp_path / "a.doc", "a")
 
 
 def test_place_that_cannot_be_written(tmp_path):
@@ -62,7 +154,7 @@ def test_place_that_cannot_be_written(tmp_path):
 
 def test_long_names_can_be_written(tmp_path):
     path = tmp_path / ("ö" * 124 + ".jsonl")
-    with open_writer(path) as writer:
+    with open_writer(path, "a.mp4") as writer:
         writer.write(notice("a"))
     assert path.exists()
 

@@ -42,6 +42,7 @@ def test_every_option_may_stand_in_the_file(config):
         'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
+        'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
     )
     settings = load("--config", path)
     assert settings.model_dump() == {
@@ -57,6 +58,10 @@ def test_every_option_may_stand_in_the_file(config):
         "out": "/o",
         "debug_dir": "/d",
         "quiet": True,
+        "annotate": True,
+        "plot": True,
+        "jobs": 3,
+        "cluster": "tcp://h:1",
     }
 
 

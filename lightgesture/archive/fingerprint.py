@@ -1,0 +1,59 @@
+"""Short names for what a result depends on: when one differs, the result is made anew."""
+
+import hashlib
+import json
+import os
+from importlib.resources import files
+from pathlib import Path
+
+from lightgesture._version import __version__
+from lightgesture.archive.tasks import Task
+from lightgesture.settings import DecodeSettings
+from lightgesture.sources import is_picture_name
+
+NO_INFLUENCE = frozenset({"as_json", "cluster", "jobs", "out", "quiet"})
+"""Settings that change no file of results; any other, also one that is added later, makes them anew."""
+
+_FILES = ("model", "selector", "profile", "grammar")
+_ROOMS_WITH_DATA = ("features", "models")
+
+
+def input_fingerprint(task: Task) -> str | None:
+    """Of size and time of change: of a file, or of the pictures of a folder with their names.
+
+    None where there is nothing to go by: no such file, a stream, a folder that cannot be read.
+    """
+    try:
+        if not os.path.isdir(task.path):
+            return _digest([_stamp(task.path)]) if os.path.isfile(task.path) else None
+        names = task.pictures or sorted(name for name in os.listdir(task.path) if is_picture_name(name))
+        return _digest([(os.fsencode(name).hex(), *_stamp(os.path.join(task.path, name))) for name in names])
+    except OSError:
+        return None
+
+
+def run_fingerprint(settings: DecodeSettings) -> str:
+    """Of the version of this package, all settings that matter, and the content of the files that they name."""
+    content = settings.model_dump(mode="json", exclude=set(NO_INFLUENCE))
+    for key in _FILES:
+        value = content.get(key)
+        if value is not None and os.path.isfile(value):
+            content[key] = hashlib.sha256(Path(value).read_bytes()).hexdigest()
+    return _digest([__version__, content, *_bundled()])
+
+
+def _bundled() -> list[str]:
+    """Digests of the models and the grammar that come with the package."""
+    package = files("lightgesture")
+    data = [item for room in _ROOMS_WITH_DATA for item in (package / room / "data").iterdir()]
+    data.append(package / "fsm" / "grammar.toml")
+    return [hashlib.sha256(item.read_bytes()).hexdigest() for item in sorted(data, key=str) if item.is_file()]
+
+
+def _stamp(path: str) -> tuple[int, int]:
+    status = os.stat(path)
+    return status.st_size, status.st_mtime_ns
+
+
+def _digest(content: object) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()

@@ -1,0 +1,170 @@
+"""One input through the pipeline, records to files and messages.
+
+An input that fails before its first frame leaves no file. One that fails later, a video that ends early, keeps what
+was decoded: its records and its files end with a summary whose status is "failed". An interrupted input leaves no file.
+"""
+
+import time
+from collections.abc import Iterable, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+
+from lightgesture.archive.messages import Advanced, Hear, Opened, Outcome, Printed
+from lightgesture.archive.tasks import Task
+from lightgesture.errors import InputError
+from lightgesture.frames import Frame
+from lightgesture.opening import make_debug_pictures, open_pipeline
+from lightgesture.pipeline import Pipeline
+from lightgesture.records import FrameRecord, Record, SummaryRecord
+from lightgesture.results import (
+    WRITERS,
+    AnnotatedVideo,
+    DebugPictures,
+    JsonPrinter,
+    TextPrinter,
+    Writer,
+    open_annotated_video,
+    open_plot,
+    open_writer,
+)
+from lightgesture.settings import DecodeSettings
+from lightgesture.sources import Source
+
+
+class Runner:
+    """Decodes input after input with the models that the first one loaded.
+
+    encoding: of standard output, for what it lacks is escaped in JSON.
+    """
+
+    def __init__(self, settings: DecodeSettings, encoding: str) -> None:
+        self._settings = settings
+        self._encoding = encoding
+        self._pipeline: Pipeline | None = None
+
+    def run(self, task: Task, hear: Hear) -> Outcome:
+        """Decode one input and tell `hear` of it, all but the outcome.
+
+        UsageError: the model, the grammar or an output folder is wrong.
+        """
+        start = time.perf_counter()
+        debug = make_debug_pictures(self._settings, task.stem)
+        pipeline = self._open_pipeline(task.name, debug)
+        try:
+            outcome = _Work(task, self._settings, pipeline, debug, self._encoding, hear).run()
+        except InputError as error:
+            outcome = Outcome("failed", str(error))
+        return replace(outcome, seconds=time.perf_counter() - start)
+
+    def _open_pipeline(self, name: str, debug: DebugPictures | None) -> Pipeline:
+        if self._pipeline is None:
+            needs_frames = self._settings.frames or self._settings.annotate or self._settings.plot
+            settings = self._settings.model_copy(update={"frames": needs_frames})
+            self._pipeline = open_pipeline(settings, None, None)
+        return self._pipeline.for_stream(name, debug)
+
+
+class _Work:
+    """One input while it is decoded."""
+
+    def __init__(
+        self,
+        task: Task,
+        settings: DecodeSettings,
+        pipeline: Pipeline,
+        debug: DebugPictures | None,
+        encoding: str,
+        hear: Hear,
+    ) -> None:
+        self._task, self._settings, self._pipeline, self._debug = task, settings, pipeline, debug
+        self._hear = hear
+        self._writers: list[Writer] = [self._printer(encoding)]
+        self._frame_writers: list[Writer] = []
+        self._video: AnnotatedVideo | None = None
+        self._files: list[str] = []
+        self._summary: SummaryRecord | None = None
+
+    def run(self) -> Outcome:
+        """InputError: no frame could be decoded."""
+        with ExitStack() as stack:
+            source = stack.enter_context(self._task.open(self._settings.fps))
+            self._hear(Opened(self._task.place, source.frame_count))
+            self._open_files(stack)
+            failure = self._process(source)
+        summary = self._summary
+        return Outcome(
+            status="ok" if failure is None else "failed",
+            message=None if failure is None else str(failure),
+            frames=summary.frames if summary else 0,
+            instructions=summary.instructions if summary else 0,
+            rejected=summary.rejected if summary else 0,
+            files=tuple(self._files),
+        )
+
+    def _printer(self, encoding: str) -> Writer:
+        place, name = self._task.place, self._task.name
+
+        def print_line(line: str) -> None:
+            self._hear(Printed(place, (line,)))
+
+        return JsonPrinter(print_line, encoding) if self._settings.as_json else TextPrinter(print_line, name)
+
+    def _open_files(self, stack: ExitStack) -> None:
+        if not self._settings.out:
+            return
+        # What is opened last is put in place first, and where that fails the rest is not: so the likeliest to fail.
+        for suffix in reversed(WRITERS):
+            self._writers.append(stack.enter_context(open_writer(self._path(suffix), self._task.name)))
+        if self._settings.plot:
+            self._frame_writers.append(stack.enter_context(open_plot(self._path(".png"), self._task.name)))
+        if self._settings.annotate:
+            self._video = stack.enter_context(open_annotated_video(self._path(".mp4")))
+
+    def _path(self, suffix: str) -> Path:
+        name = f"{self._task.stem}{suffix}"
+        self._files.append(name)
+        return Path(self._settings.out or "") / name
+
+    def _process(self, source: Source) -> InputError | None:
+        """Run the source to its end; what ended it early, if at least one frame was decoded before."""
+        failure = None
+        is_begun = False
+        try:
+            for frame in source:
+                self._process_frame(frame)
+                is_begun = True
+        except InputError as error:
+            if not is_begun:
+                raise
+            failure = error
+        self._write(_finish(self._pipeline, is_failed=failure is not None))
+        return failure
+
+    def _process_frame(self, frame: Frame) -> None:
+        if self._debug is not None:
+            self._debug.select(frame.time_s)
+        records: Sequence[Record] = self._pipeline.process(frame.image, frame.time_s, frame.index)
+        if self._video is not None:
+            self._video.write(frame.image, frame.time_s, records)
+        self._write(records)
+        self._hear(Advanced(self._task.place, 1))
+
+    def _write(self, records: Iterable[Record]) -> None:
+        for record in records:
+            for writer in self._frame_writers:
+                writer.write(record)
+            if isinstance(record, FrameRecord) and not self._settings.frames:
+                continue
+            if isinstance(record, SummaryRecord):
+                self._summary = record
+            for writer in self._writers:
+                writer.write(record)
+
+
+def _finish(pipeline: Pipeline, is_failed: bool) -> Iterable[Record]:
+    for record in pipeline.finish():
+        if is_failed and isinstance(record, SummaryRecord):
+            yield replace(record, status="failed")
+        else:
+            yield record

@@ -1,0 +1,67 @@
+"""From the inputs of the command line to tasks, one for each stream of frames."""
+
+import os
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from lightgesture.results.stems import output_stems
+from lightgesture.sources import Source, is_picture_name, natural_key, open_source
+from lightgesture.sources.folder import FrameFolder
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One input.
+
+    place: position among the inputs, 0-based. path: where it lies. name: what its records call it. stem: of its
+    output files. pictures: names of the frames in the folder `path`, where the user named pictures; empty for all.
+    """
+
+    place: int
+    path: str
+    name: str
+    stem: str
+    pictures: tuple[str, ...] = ()
+
+    def open(self, fps: float) -> Source:
+        """The open source of its frames; fps: of folders of frames. InputError: one line."""
+        if self.pictures:
+            return FrameFolder(self.path, fps, self.pictures)
+        return open_source(self.path, fps)
+
+    def absolute(self) -> "Task":
+        """The same for a process that runs in another folder."""
+        return replace(self, path=os.path.abspath(self.path))
+
+
+def make_tasks(inputs: Sequence[str]) -> list[Task]:
+    """A task for each input, in the order given.
+
+    Several pictures of one folder, which is what a glob of frames gives, are the frames of one input that is
+    named like the folder; a single picture stays alone. Its place is that of the first of them.
+    """
+    groups = _picture_groups(inputs)
+    paths: dict[str, tuple[str, ...]] = {}
+    for name in inputs:
+        folder = os.path.dirname(name)
+        if os.path.basename(name) in groups.get(folder, ()):
+            paths.setdefault(folder or os.curdir, groups[folder])
+        else:
+            paths.setdefault(name, ())
+    stems = output_stems(list(paths))
+    return [
+        Task(place, path, path, stem, pictures)
+        for place, ((path, pictures), stem) in enumerate(zip(paths.items(), stems, strict=True))
+    ]
+
+
+def _picture_groups(inputs: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Folder to the pictures named in it, natural order, where there are at least two."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for name in inputs:
+        if is_picture_name(name) and os.path.isfile(name):
+            found[os.path.dirname(name)].append(os.path.basename(name))
+    return {
+        folder: tuple(sorted(names, key=natural_key)) for folder, names in found.items() if len(names) > 1
+    }

@@ -1,0 +1,115 @@
+"""The annotated video: every frame with the overlay, at its own time.
+
+Written by PyAV and not by OpenCV, whose writer knows one constant rate, tells nobody of a full disk, and has no H.264,
+which is what browsers and phones play.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import cv2
+import numpy as np
+
+from lightgesture.features.types import Image
+from lightgesture.overlay import Overlay
+from lightgesture.records import Record
+from lightgesture.results.atomic import replacing
+
+if TYPE_CHECKING:
+    from av.container import OutputContainer
+    from av.video.stream import VideoStream
+
+
+@dataclass(frozen=True, slots=True)
+class VideoSettings:
+    """How the annotated video is coded.
+
+    codec: an encoder of FFmpeg that PyAV brings. quality: constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is
+    sensible, 23 its own default. preset: of x264; slower ones make smaller files. ticks_per_s: of the file's clock;
+    90 000 is MPEG's and holds all usual rates exactly. nominal_rate: frames a second, a hint to the encoder only.
+    """
+
+    codec: str = "libx264"
+    quality: int = 23
+    preset: str = "veryfast"
+    ticks_per_s: int = 90_000
+    nominal_rate: int = 30
+
+
+class AnnotatedVideo:
+    """Takes frame after frame with its records."""
+
+    def __init__(self, container: "OutputContainer", settings: VideoSettings) -> None:
+        self._container = container
+        self._settings = settings
+        self._overlay = Overlay()
+        self._stream: VideoStream | None = None
+        self._size = (0, 0)
+        self._tick = -1
+
+    def write(self, image_bgr: Image, time_s: float, records: Sequence[Record]) -> None:
+        """Append a frame, shown from `time_s` (seconds) on; the first one's size is the video's.
+
+        A frame whose stamp does not come after the last one's is shown a tick later. OSError: it cannot be written.
+        """
+        import av
+
+        picture = self._overlay.draw(image_bgr, records)
+        if self._stream is None:
+            self._stream = self._open(picture)
+        frame = av.VideoFrame.from_ndarray(_fitted(picture, self._size), format="bgr24")
+        self._tick = max(self._tick + 1, round(time_s * self._settings.ticks_per_s))
+        frame.pts, frame.time_base = self._tick, Fraction(1, self._settings.ticks_per_s)
+        self._container.mux(self._stream.encode(frame))
+
+    def finish(self) -> None:
+        """Write what the encoder still holds."""
+        if self._stream is not None:
+            self._container.mux(self._stream.encode(None))
+
+    def _open(self, picture: Image) -> "VideoStream":
+        height, width = picture.shape[:2]
+        self._size = width + width % 2, height + height % 2  # H.264 shares a colour between two by two pixels
+        settings = self._settings
+        options = {"crf": str(settings.quality), "preset": settings.preset}
+        added = self._container.add_stream(settings.codec, settings.nominal_rate, options=options)
+        stream = cast("VideoStream", added)
+        stream.width, stream.height = self._size
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.time_base = Fraction(1, settings.ticks_per_s)
+        stream.codec_context.thread_count = 1  # one video a core; and the same bytes on any machine
+        return stream
+
+
+@contextmanager
+def open_annotated_video(path: Path, settings: VideoSettings | None = None) -> Iterator[AnnotatedVideo]:
+    """Write an `.mp4` file that appears under its name when the block ends well. Needs the extra `av`."""
+    import av
+
+    with replacing(path) as temporary, open(temporary, "wb") as stream:
+        # Through a file of our own: FFmpeg would read signs in a name as a protocol.
+        container = av.open(stream, "w", format="mp4")
+        try:
+            video = AnnotatedVideo(container, settings or VideoSettings())
+            yield video
+            video.finish()
+        finally:
+            container.close()
+
+
+def _fitted(picture: Image, size: tuple[int, int]) -> Image:
+    """The picture in the video's size (width, height): a missing row or column repeated, another size scaled to fit."""
+    width, height = size
+    if not (width - 1 <= picture.shape[1] <= width and height - 1 <= picture.shape[0] <= height):
+        scale = min(width / picture.shape[1], height / picture.shape[0])
+        new = max(1, round(picture.shape[1] * scale)), max(1, round(picture.shape[0] * scale))
+        picture = np.asarray(cv2.resize(picture, new, interpolation=cv2.INTER_AREA), np.uint8)
+        down, across = height - picture.shape[0], width - picture.shape[1]
+        edges = down // 2, down - down // 2, across // 2, across - across // 2
+        return np.asarray(cv2.copyMakeBorder(picture, *edges, cv2.BORDER_CONSTANT, value=(0, 0, 0)), np.uint8)
+    down, across = height - picture.shape[0], width - picture.shape[1]
+    return np.asarray(cv2.copyMakeBorder(picture, 0, down, 0, across, cv2.BORDER_REPLICATE), np.uint8)

@@ -1,0 +1,157 @@
+"""The timeline picture of a video: signs of both hands, words, instructions and rejections over time."""
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from lightgesture.console import one_line
+from lightgesture.fsm import Instruction, Rejected, Word
+from lightgesture.models import CLASSES, NONE
+from lightgesture.records import FrameRecord, Record
+from lightgesture.results.atomic import replacing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+NOT_READ = "not read"
+TOKENS = (NOT_READ, *(token for token in CLASSES if token != NONE))
+"""The rows of the picture, from the bottom; a hand without a token stands in the lowest."""
+
+
+@dataclass(frozen=True, slots=True)
+class TimelineSettings:
+    """How the picture looks.
+
+    height_in: inches. width_in, width_limit_in: least and largest width, inches. inches_per_s: width of a second
+    between them, enough for two words. dots_per_inch: of the PNG. least_span_s: what the axis shows of a single frame,
+    seconds.
+    """
+
+    height_in: float = 7.0
+    width_in: float = 10.0
+    width_limit_in: float = 40.0
+    inches_per_s: float = 0.6
+    dots_per_inch: int = 100
+    least_span_s: float = 0.1
+
+
+_HANDS = {"left": ("#1f77b4", 0.15), "right": ("#d95f02", -0.15)}
+"""Side to the colour of its dots and how far they stand above the row of their token."""
+
+_WORD, _GOOD, _BAD = "#444444", "#2a9d4a", "#c0392b"
+_LEVELS = 3
+
+
+@dataclass(slots=True)
+class Timeline:
+    """What the picture shows, collected record by record."""
+
+    hands: dict[str, tuple[list[float], list[int]]] = field(
+        default_factory=lambda: {side: ([], []) for side in _HANDS}
+    )
+    words: list[Word] = field(default_factory=list)
+    instructions: list[Instruction] = field(default_factory=list)
+    rejections: list[Rejected] = field(default_factory=list)
+    end_s: float = 0.0
+
+    def write(self, record: Record) -> None:
+        """Take in a record."""
+        match record:
+            case FrameRecord(time_s=float() as time_s):
+                self.end_s = max(self.end_s, time_s)
+                for hand in record.hands:
+                    times, rows = self.hands[hand.side]
+                    times.append(time_s)
+                    rows.append(TOKENS.index(hand.token if hand.token in TOKENS else NOT_READ))
+            case Word():
+                self.words.append(record)
+            case Instruction():
+                self.instructions.append(record)
+            case Rejected():
+                self.rejections.append(record)
+            case _:
+                pass
+
+
+@contextmanager
+def open_plot(path: Path, name: str) -> Iterator[Timeline]:
+    """Collect records and draw the `.png` file when the block ends well; name: of the video.
+
+    Needs the extra `plots`.
+    """
+    with replacing(path) as temporary:
+        timeline = Timeline()
+        yield timeline
+        draw_timeline(timeline, name, temporary)
+
+
+def draw_timeline(
+    timeline: Timeline, name: str, path: Path, settings: TimelineSettings | None = None
+) -> None:
+    """Draw the picture to `path`, PNG whatever its name. OSError: it cannot be written."""
+    from matplotlib.figure import Figure
+
+    settings = settings or TimelineSettings()
+    span_s = max(timeline.end_s, settings.least_span_s)
+    width = min(max(settings.width_in, span_s * settings.inches_per_s), settings.width_limit_in)
+    figure = Figure(figsize=(width, settings.height_in), layout="constrained")
+    signs, said, issued = figure.subplots(3, 1, sharex=True, height_ratios=(5, 1.6, 1.8))
+    signs.set_title(one_line(name), parse_math=False, loc="left")
+    _draw_signs(signs, timeline)
+    _draw_words(said, timeline.words)
+    _draw_outcomes(issued, timeline)
+    issued.set_xlim(0, span_s * 1.02)
+    issued.set_xlabel("time, seconds")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # signs of a name that the font lacks are drawn as boxes
+        figure.savefig(path, format="png", dpi=settings.dots_per_inch)
+
+
+def _draw_signs(axes: "Axes", timeline: Timeline) -> None:
+    for side, (times, rows) in timeline.hands.items():
+        colour, shift = _HANDS[side]
+        heights = [row + shift for row in rows]
+        axes.scatter(times, heights, s=9, c=colour, marker="s", linewidths=0, label=f"{side} hand")
+    axes.set_yticks(range(len(TOKENS)), TOKENS)
+    axes.set_ylim(-0.6, len(TOKENS) - 0.4)
+    axes.grid(axis="y", color="#e5e5e5")
+    axes.set_axisbelow(True)
+    axes.set_ylabel("sign")
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, markerscale=2)
+
+
+def _draw_words(axes: "Axes", words: Sequence[Word]) -> None:
+    axes.set_ylabel("words")
+    _empty(axes)
+    for number, word in enumerate(words):
+        level = number % _LEVELS
+        axes.plot([word.time_s] * 2, [0, level + 0.3], color=_WORD, linewidth=1)
+        _text(axes, word.time_s, level + 0.35, word.word, _WORD)
+
+
+def _draw_outcomes(axes: "Axes", timeline: Timeline) -> None:
+    axes.set_ylabel("instructions")
+    _empty(axes)
+    events: list[Instruction | Rejected] = [*timeline.instructions, *timeline.rejections]
+    for number, event in enumerate(sorted(events, key=lambda event: event.time_s)):
+        level = number % _LEVELS
+        if isinstance(event, Instruction):
+            length = max(event.time_s - event.start_time_s, 0.0)
+            axes.broken_barh([(event.start_time_s, length)], (level, 0.3), facecolors=_GOOD)
+            _text(axes, event.start_time_s, level + 0.35, f"{event.text}  {event.confidence:.0%}", _GOOD)
+        else:
+            axes.plot([event.time_s], [level + 0.15], marker="x", color=_BAD)
+            _text(axes, event.time_s, level + 0.35, f"{event.text}: {event.reason}", _BAD)
+
+
+def _empty(axes: "Axes") -> None:
+    axes.set_yticks([])
+    axes.set_ylim(-0.2, _LEVELS + 0.1)
+
+
+def _text(axes: "Axes", x: float, y: float, text: str, colour: str) -> None:
+    style: dict[str, Any] = {"color": colour, "fontsize": 8, "clip_on": True, "parse_math": False}
+    axes.text(x, y, one_line(text), **style)

@@ -1,0 +1,159 @@
+"""Annotated videos and timelines: their own time, sizes, disks that are full, and what is drawn."""
+
+import subprocess
+import sys
+
+import av
+import numpy as np
+import pytest
+
+from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.fsm import Instruction, Rejected, Word
+from lightgesture.records import FrameRecord, Hand
+from lightgesture.results import open_annotated_video, open_plot
+from lightgesture.results.timeline import NOT_READ, TOKENS
+
+
+def frames_of(path):
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        assert stream.codec_context.name == "h264"
+        return [
+            (float(frame.pts * frame.time_base), frame.width, frame.height)
+            for frame in container.decode(stream)
+        ]
+
+
+def write(path, frames):
+    with open_annotated_video(path) as video:
+        for time_s, size in frames:
+            video.write(np.full((*size, 3), 120, np.uint8), time_s, [])
+        assert not path.exists()
+    return frames_of(path)
+
+
+def test_frames_keep_their_own_time(tmp_path):
+    times = [0.5, 0.533333, 0.6, 2.0, 2.001, 60.25]
+    seen = [time_s for time_s, _, _ in write(tmp_path / "a.mp4", [(time_s, (48, 64)) for time_s in times])]
+    assert seen == pytest.approx(times, abs=1e-5)
+
+
+def test_stamps_that_stand_or_run_back_are_endured(tmp_path):
+    seen = [
+        time_s for time_s, _, _ in write(tmp_path / "a.mp4", [(each, (48, 64)) for each in (1, 1, 0.2, 1.5)])
+    ]
+    assert seen == pytest.approx([1.0, 1.00001, 1.00002, 1.5], abs=1e-4)
+
+
+def test_odd_and_changing_sizes(tmp_path):
+    sizes = [(33, 51), (33, 51), (100, 20), (1, 1), (34, 52)]
+    seen = write(tmp_path / "a.mp4", [(number / 10, size) for number, size in enumerate(sizes)])
+    assert {size for _, *size in map(list, seen) for size in [tuple(size)]} == {(52, 34)}
+    assert len(seen) == 5
+
+
+def test_hostile_names(tmp_path):
+    assert len(write(tmp_path / "take:1 %d [x]*ö.mp4", [(0.0, (48, 64))])) == 1
+
+
+def test_an_annotated_video_that_cannot_be_written(tmp_path):
+    (tmp_path / "a.mp4").mkdir()
+    with (
+        pytest.raises(UsageError, match="cannot be written"),
+        open_annotated_video(tmp_path / "a.mp4") as video,
+    ):
+        video.write(np.zeros((48, 64, 3), np.uint8), 0.0, [])
+
+
+def test_through_the_command_line(run, make_video, tmp_path, fake):
+    out = tmp_path / "out"
+    result = run("decode", make_video("dive.avi", 6), "--annotate", "--plot", "--json", "--out", out)
+    assert (result.status, result.err) == (ExitStatus.OK, [])
+    assert not any('"type":"frame"' in line for line in result.out), "they are for the pictures alone"
+    assert [time_s for time_s, _, _ in frames_of(out / "dive.mp4")] == pytest.approx(
+        [0, 0.05, 0.1, 0.15, 0.2, 0.25]
+    )
+    assert (out / "dive.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "dive.jsonl").read_text().splitlines() == result.out
+
+
+FULL = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
+from lightgesture.results import open_annotated_video, open_writer
+from lightgesture.errors import UsageError
+from lightgesture.fsm import Notice
+from pathlib import Path
+import numpy as np
+try:
+    if sys.argv[1] == ".mp4":
+        with open_annotated_video(Path("a.mp4")) as video:
+            for index in range(40):
+                image = np.random.default_rng(index).integers(0, 255, (48, 64, 3), dtype=np.uint8)
+                video.write(image, index / 10, [])
+    else:
+        with open_writer("a.jsonl", "a") as writer:
+            for index in range(40):
+                writer.write(Notice(source="a", frame=index, time_s=0.0, reason="unknown_pair", detail="3,left"))
+except UsageError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("suffix", [".jsonl", ".mp4"])
+def test_a_disk_that_takes_no_more(tmp_path, suffix):
+    """A limit on the size of files stands for a full disk: the same call fails, with another reason."""
+    (tmp_path / f"a{suffix}").write_text("earlier result")
+    done = subprocess.run(
+        [sys.executable, "-c", FULL, suffix],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    assert done.stdout == f"a{suffix}: cannot be written (File too large); name another folder\n"
+    assert [path.name for path in tmp_path.iterdir()] == [f"a{suffix}"]
+    assert (tmp_path / f"a{suffix}").read_text() == "earlier result"
+
+
+def test_timeline_of_everything(tmp_path):
+    at = {"source": "a", "frame": 1}
+    hand = {"confidence": 0.9, "box": (0, 0, 1, 1), "track": 1}
+    hands = (
+        Hand(side="left", token="ok", reason=None, **hand),
+        Hand(side="right", token=None, reason="partial", **hand),
+    )
+    with open_plot(tmp_path / "a.png", "$x^ \n\udcff ダイバー.mp4") as timeline:
+        for number in range(10):
+            timeline.write(FrameRecord(source="a", frame=number, time_s=number / 10, hands=hands))
+        timeline.write(Word(time_s=0.3, pair=("ok", "0"), word="$STOP", state="", confidence=1.0, **at))
+        timeline.write(Rejected(time_s=0.6, reason="limit", text="STOP $ 5", detail="", **at))
+        timeline.write(
+            Instruction(
+                time_s=0.9,
+                start_frame=0,
+                start_time_s=0.1,
+                text="STOP HOVER GO",
+                kind="task",
+                action="HOVER",
+                duration_s=None,
+                program=None,
+                parameter=None,
+                change=None,
+                confidence=0.9,
+                words=(),
+                **at,
+            )
+        )
+    assert timeline.end_s == 0.9
+    assert timeline.hands["left"][1] == [TOKENS.index("ok")] * 10
+    assert timeline.hands["right"][1] == [TOKENS.index(NOT_READ)] * 10
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_timeline_of_nothing(tmp_path):
+    with open_plot(tmp_path / "a.png", "a"):
+        pass
+    assert (tmp_path / "a.png").stat().st_size > 1000

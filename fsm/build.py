@@ -5,8 +5,9 @@ from typing import Any
 
 from lightgesture.fsm.events import Pair
 from lightgesture.fsm.forms import Form, FormError, Vocabulary, parse_form
-from lightgesture.fsm.grammar import DwellSettings, Grammar, GrammarError, Limits
+from lightgesture.fsm.grammar import Grammar, GrammarError
 from lightgesture.fsm.schema import Defect, GrammarFile, key_path, parse_document
+from lightgesture.fsm.settings import DwellSettings, Limits
 from lightgesture.fsm.table import Table, compile_table
 
 

@@ -2,13 +2,14 @@
 
 import math
 
-from lightgesture.fsm.dwell import Dwell, Hold, release_frames
-from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm.dwell import Hold, make_dwell
+from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Pair, Rejected, State, Word
 from lightgesture.fsm.forms import Form, spell
 from lightgesture.fsm.grammar import Grammar
 from lightgesture.fsm.sentence import Sentence, name_expected, objection
 from lightgesture.fsm.table import bind
 from lightgesture.fsm.timeline import Timeline
+from lightgesture.fsm.unread import UnreadSigning
 
 IDLE = "idle"
 COLLECTING = "collecting"
@@ -25,10 +26,12 @@ class Decoder:
 
     An instruction is issued only for a sentence that the grammar's table accepts from its start word to
     its end word. A held pair that is no word is reported and the sentence kept; a word that has no place
-    rejects the sentence; a sentence without a new word for `timeout_s` is dropped.
+    rejects the sentence; a sentence without a new word for `timeout_s` is dropped, and so is one in which hands were
+    seen for too long without saying a word, because a sign of it may have been missed.
 
-    hold: consecutive frames that make a word, at least 1; None: the grammar's own. source: name of the
-    input in the events. ValueError: a hold below 1.
+    hold: consecutive frames that make a word, at least 1. hold_seconds: seconds instead, above 0; the evidence that a
+    word needs where the grammar goes by evidence. Both None: the grammar's own. source: name of the input in the
+    events. ValueError: a hold out of range, or both.
     """
 
     __slots__ = (
@@ -41,15 +44,21 @@ class Decoder:
         "_source",
         "_time_s",
         "_timeline",
+        "_unread",
     )
 
-    def __init__(self, grammar: Grammar, *, hold: int | None = None, source: str | None = None) -> None:
-        frames = grammar.dwell.hold if hold is None else hold
-        if frames < 1:
-            raise ValueError(f"hold is {frames} frames; use a whole number from 1, such as 15")
+    def __init__(
+        self,
+        grammar: Grammar,
+        *,
+        hold: int | None = None,
+        hold_seconds: float | None = None,
+        source: str | None = None,
+    ) -> None:
         self._grammar = grammar
         self._source = source
-        self._dwell = Dwell(frames, release_frames(frames, grammar.dwell.release))
+        self._dwell = make_dwell(grammar.dwell, hold, hold_seconds)
+        self._unread = UnreadSigning(grammar.dwell.unread * self._dwell.need)
         self._timeline = Timeline()
         self._sentence: Sentence | None = None
         self._frame = -1
@@ -75,11 +84,14 @@ class Decoder:
         left_confidence: float = 1.0,
         right_confidence: float = 1.0,
         frame: int | None = None,
+        left_seen: bool | None = None,
+        right_seen: bool | None = None,
     ) -> list[Event]:
         """Take in one frame: the tokens of the diver's hands (None: no token) and the time stamp, seconds.
 
         Confidences: 0 to 1; the lower of the two is the pair's. frame: 0-based index; None: one more
-        than the last. Stamps that stand still, run back or are not finite are endured: no time passes.
+        than the last. left_seen, right_seen: whether the hand is in view, read or not; None: where it has a
+        token. Stamps that stand still, run back or are not finite are endured: no time passes.
         """
         self._frame = self._frame + 1 if frame is None else frame
         if math.isfinite(time_s):
@@ -93,9 +105,15 @@ class Decoder:
             self._drop(events, "timeout", self.sentence, f"no word for {timeout_s:g} s")
         confidence = left_confidence if left_confidence < right_confidence else right_confidence
         pair = None if left is None or right is None else (left, right)
-        hold = self._dwell.process(pair, confidence, self._frame, self._time_s)
+        dwell = self._dwell
+        hold = dwell.process(pair, confidence, self._frame, self._time_s, now_s)
         if hold is not None:
             self._read(events, hold)
+        elif self._sentence is not None and (pair is None or pair != dwell.spent):
+            is_left = left is not None if left_seen is None else left_seen
+            is_right = right is not None if right_seen is None else right_seen
+            if (is_left or is_right) and self._unread.process(pair, dwell.pair, dwell.step):
+                self._miss(events)
         self._show_growth(events)
         return events
 
@@ -109,11 +127,12 @@ class Decoder:
 
     def _read(self, events: list[Event], hold: Hold) -> None:
         """A pair was held long enough."""
-        word = self._meaning(hold)
+        word = self._meaning(hold.pair)
         left, right = hold.pair
         if word is None:
             inside = hold.pair in self._grammar.idle_words
             place = "no word inside a sentence" if inside else "no word"
+            self._unread.pass_over()
             self._notice(events, "unknown_pair", f"{left},{right} is {place}; repeat it")
             return
         row = self._grammar.table.transitions[self._sentence.state if self._sentence else 0]
@@ -126,9 +145,9 @@ class Decoder:
             text = spell([*self._sentence.words, word], self._grammar.vocabulary.join)
             self._drop(events, "out_of_order", text, detail)
 
-    def _meaning(self, hold: Hold) -> str | None:
+    def _meaning(self, pair: Pair) -> str | None:
         words = self._grammar.idle_words if self._sentence is None else self._grammar.sentence_words
-        return words.get(hold.pair)
+        return words.get(pair)
 
     def _accept(self, events: list[Event], hold: Hold, word: str, target: int) -> None:
         """A word has its place: the sentence goes on or is complete."""
@@ -138,6 +157,7 @@ class Decoder:
                 start_frame=hold.first_frame, start_time_s=hold.first_time_s, touched_s=now_s
             )
         sentence = self._sentence
+        self._unread.reset()
         sentence.add(word, hold, target, now_s, self._grammar.vocabulary.join)
         form = self._grammar.table.accepting.get(target)
         events.append(
@@ -188,6 +208,13 @@ class Decoder:
         self._sentence = None
         self._show(events, None)
 
+    def _miss(self, events: list[Event]) -> None:
+        """Hands were seen for too long without a word: whatever follows, a word may be missing before it."""
+        # What the sign means inside the sentence it may not mean outside.
+        self._dwell.discard()
+        detail = f"a sign after {self.sentence} was not read; sign the sentence again"
+        self._drop(events, "unread_sign", self.sentence, detail)
+
     def _drop(self, events: list[Event], reason: str, text: str, detail: str) -> None:
         self._sentence = None
         rejected = Rejected(
@@ -209,16 +236,16 @@ class Decoder:
 
     def _show_growth(self, events: list[Event]) -> None:
         """A display follows the hold, and learns that it broke off, at most five times a second."""
-        hold = self._dwell.growing
-        if hold is None and not self._growth_shown:
+        pair = self._dwell.pair
+        if pair is None and not self._growth_shown:
             return
         if self._timeline.now_s - self._shown_s < DISPLAY_INTERVAL_S:
             return
-        if hold is None:
+        if pair is None:
             self._show(events, None)
             return
-        progress = round(hold.frames / self._dwell.hold, DECIMALS)
-        self._show(events, Growth(pair=hold.pair, word=self._meaning(hold), progress=progress))
+        progress = round(self._dwell.progress, DECIMALS)
+        self._show(events, Growth(pair=pair, word=self._meaning(pair), progress=progress))
 
     def _show(self, events: list[Event], growth: Growth | None) -> None:
         self._shown_s = self._timeline.now_s

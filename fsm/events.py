@@ -90,7 +90,7 @@ class Instruction:
 class Rejected:
     """A sentence was dropped.
 
-    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout" or "cancelled".
+    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled" or "unread_sign".
     text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
     """
 

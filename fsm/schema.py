@@ -11,10 +11,16 @@ from typing import Annotated, Any, NamedTuple
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from lightgesture.fsm.grammar import DwellSettings, Limits
+from lightgesture.fsm.settings import DwellSettings, Limits, Rule
 
 MAX_HOLD = 1000
 """Longest hold that a file may ask for, frames: 16 s at 60 frames a second."""
+
+MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
+"""Shortest and longest hold that a file may ask for, seconds."""
+
+MAX_UNREAD = 100.0
+"""Longest unread signing, holds: no time-out is later, so that this much turns the rule off."""
 
 MAX_TIMEOUT_S = 3600.0
 """Longest time-out, seconds."""
@@ -128,8 +134,13 @@ class LimitsTable(_Table):
 class DwellTable(_Table):
     """[dwell]"""
 
+    rule: Rule = _DWELL.rule
     hold: int = Field(default=_DWELL.hold, ge=1, le=MAX_HOLD)
+    hold_seconds: float = Field(
+        default=_DWELL.hold_seconds, ge=MIN_HOLD_S, le=MAX_HOLD_S, allow_inf_nan=False
+    )
     release: float = Field(default=_DWELL.release, gt=0, le=1, allow_inf_nan=False)
+    unread: float = Field(default=_DWELL.unread, gt=0, le=MAX_UNREAD, allow_inf_nan=False)
     timeout_s: float = Field(default=_DWELL.timeout_s, gt=0, le=MAX_TIMEOUT_S, allow_inf_nan=False)
 
 

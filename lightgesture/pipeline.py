@@ -66,8 +66,8 @@ class Pipeline:
 
     model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
     see `features.selector`. profile: path of a colour profile of the diver's hands, which replaces the map of
-    skin colours; None for that map. hold: consecutive frames that a sign is held, None for the
-    grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
+    skin colours; None for that map. hold: consecutive frames that a sign is held; hold_seconds: seconds instead; both
+    None for the grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
     selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
     picture of every stage of every frame.
     Raises lightgesture.models.ModelError, lightgesture.features.selector_file.SelectorError,
@@ -81,6 +81,7 @@ class Pipeline:
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         hold: int | None = None,
+        hold_seconds: float | None = None,
         grammar: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
         source: str | None = None,
@@ -92,7 +93,7 @@ class Pipeline:
         self._regions = RegionStage(selector)
         self._tracks = TrackStage(selection=self._regions.settings)
         self._reading = ReadingStage(load_classifier(model))
-        self._decoder = Decoder(load_grammar(grammar), hold=hold, source=source)
+        self._decoder = Decoder(load_grammar(grammar), hold=hold, hold_seconds=hold_seconds, source=source)
         self._clock = StageClock()
         self._one_thread = OneBlasThread()
         self._index = 0
@@ -215,6 +216,8 @@ class Pipeline:
             left_confidence=left.confidence if left else 1.0,
             right_confidence=right.confidence if right else 1.0,
             frame=index,
+            left_seen=left is not None,
+            right_seen=right is not None,
         )
 
     def _frame_record(

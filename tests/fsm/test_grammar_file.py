@@ -117,7 +117,11 @@ def test_missing_file_and_folder(tmp_path):
     ("old", "new", "expected"),
     [
         ("hold = 15", "holt = 15", "dwell.holt: unknown key; did you mean 'hold'?"),
-        ("hold = 15", "zzz = 15", "dwell.zzz: unknown key; use hold, release, timeout_s"),
+        (
+            "hold = 15",
+            "zzz = 15",
+            "dwell.zzz: unknown key; use rule, hold, hold_seconds, release, unread, timeout_s",
+        ),
         ("[programs]", "[program]", "program: unknown key; did you mean 'programs'?"),
         ('kind = "task"', 'kind = "task"\nx = 1', "forms[0].x: unknown key; use kind, sentence"),
         ("hold = 15", 'hold = "15"', "dwell.hold: is no whole number; write one without quotes"),

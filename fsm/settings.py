@@ -1,0 +1,41 @@
+"""Numbers that a grammar file may set: one documented place for each, with its unit and effect."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+Rule = Literal["frames", "seconds", "evidence"]
+"""How a dwell tells that a pair was held for long enough."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """Bounds of numbers; what lies outside is rejected with reason "limit".
+
+    min_seconds, max_seconds: of a duration, seconds, both allowed. Ten minutes admit any number of
+    three digits and refuse a fourth that was misread. max_digits: of any number; one more rejects at once.
+    """
+
+    min_seconds: int = 1
+    max_seconds: int = 600
+    max_digits: int = 4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DwellSettings:
+    """When a sign counts.
+
+    rule: "frames", an unbroken run of `hold` frames (the paper's); "seconds", an unbroken run of `hold_seconds`,
+    whatever the camera's rate; "evidence", until the pair's seconds, weighed by their probability, less those of
+    anything else, come to `hold_seconds`. hold: frames, 1 to 1000; hold_seconds: 0.05 to 60. More gives fewer
+    false words and slower signing. release: fraction of the hold, 0 to 1 and at least one frame, that a pair must be
+    absent before it counts again; less lets a flicker double a word. unread: how long, as a multiple of the hold, hands
+    may be seen between two words without a word: more loses a sentence less often, and a sign of it more often.
+    timeout_s: seconds without an accepted word that drop an open sentence.
+    """
+
+    rule: Rule = "frames"
+    hold: int = 15
+    hold_seconds: float = 0.5
+    release: float = 0.2
+    unread: float = 1.0
+    timeout_s: float = 20.0

@@ -58,10 +58,13 @@ class Word:
 class Instruction:
     """A complete sentence, from its start word to its end word, that makes sense.
 
+    Only the kinds "kill" and "menu", where a grammar file asks for them, have no such frame.
+
     start_frame, start_time_s: first frame of the hold that accepted the start word.
     text: the sentence with digits joined; words: the words as signed.
     kind: the form's kind. action: first word after the start word. change: second one, if any.
-    duration_s: seconds. program, parameter: numbers that the grammar lists.
+    duration_s: seconds. program, parameter: numbers that the grammar lists; of the menu the program is the entry.
+    What a sentence may say several times, as between REPEAT and END, is only in the words.
     confidence: 0 to 1, the lowest of the words' confidences, for a sentence is as sure as its weakest
     sign, however long it is.
     """
@@ -90,7 +93,8 @@ class Instruction:
 class Rejected:
     """A sentence was dropped.
 
-    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled" or "unread_sign".
+    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled", "unread_sign" or
+    "unconfirmed".
     text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
     """
 
@@ -108,7 +112,10 @@ class Rejected:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class State:
-    """For displays: `state` is "idle" or "collecting", `sentence` the words so far, `dwell` the hold."""
+    """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
+
+    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word.
+    """
 
     type: Literal["state"] = field(default="state", init=False)
     source: str | None
@@ -126,8 +133,8 @@ class State:
 class Notice:
     """A sign that changed nothing.
 
-    reason: "unknown_pair" (held, but no word: repeat it) or "out_of_order" (a word that opens no
-    sentence while none is open).
+    reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
+    open) or "confirm" (the end word is wanted again).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)

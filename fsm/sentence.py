@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import is_digit, spell, split_carrier
+from lightgesture.fsm.forms import Form, is_digit, spell, split_carrier
 from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.settings import Control
 from lightgesture.fsm.table import Arguments
 
 
@@ -15,6 +16,7 @@ class Sentence:
 
     state: of the grammar's table. touched_s: when its last word was accepted, seconds of the decoder's
     timeline. digits: length of the number that is being signed. confidence: the lowest of its words'.
+    complete: the form that it has, once it is complete and waits to be confirmed.
     """
 
     start_frame: int
@@ -24,6 +26,7 @@ class Sentence:
     digits: int = 0
     confidence: float = 1.0
     words: list[str] = field(default_factory=list)
+    complete: Form | None = None
 
     def add(self, word: str, hold: Hold, state: int, now_s: float, join: str | None) -> None:
         """Take in a word that has its place."""
@@ -43,15 +46,24 @@ class Sentence:
 
 def objection(arguments: Arguments, grammar: Grammar) -> tuple[str, str] | None:
     """Why a complete sentence makes no sense: reason and detail of the rejection; None: it does."""
-    program, parameter, seconds = arguments.program, arguments.parameter, arguments.seconds
     limits = grammar.limits
-    if program is not None and program not in grammar.programs:
-        return "unknown_program", f"program {program} is not in [programs]"
-    if parameter is not None and parameter not in grammar.parameters:
-        return "unknown_parameter", f"parameter {parameter} is not in [parameters]"
-    if seconds is not None and not limits.min_seconds <= seconds <= limits.max_seconds:
-        return "limit", f"{seconds} s is outside {limits.min_seconds} to {limits.max_seconds} s"
+    if arguments.parameter is not None and arguments.parameter not in grammar.parameters:
+        return "unknown_parameter", f"parameter {arguments.parameter} is not in [parameters]"
+    for slot, number in arguments.numbers:
+        if slot == "program" and number not in grammar.programs:
+            return "unknown_program", f"program {number} is not in [programs]"
+        if slot == "seconds" and not limits.min_seconds <= number <= limits.max_seconds:
+            return "limit", f"{number} s is outside {limits.min_seconds} to {limits.max_seconds} s"
+        if slot == "times" and not 1 <= number <= limits.max_times:
+            return "limit", f"{number} times is outside 1 to {limits.max_times} times"
     return None
+
+
+def needs_confirmation(form: Form, words: Iterable[str], control: Control) -> bool:
+    """Whether a complete sentence waits for a second end word."""
+    return form.confirm or any(
+        word in control.confirm or split_carrier(word)[0] in control.confirm for word in words
+    )
 
 
 def name_expected(words: Iterable[str]) -> str:

@@ -12,12 +12,15 @@ class Limits:
     """Bounds of numbers; what lies outside is rejected with reason "limit".
 
     min_seconds, max_seconds: of a duration, seconds, both allowed. Ten minutes admit any number of
-    three digits and refuse a fourth that was misread. max_digits: of any number; one more rejects at once.
+    three digits and refuse a fourth that was misread. max_times: of a number that says how often, at least 1.
+    max_digits: of any number; max_words: of a sentence, 3 to 1000; one more rejects at once.
     """
 
     min_seconds: int = 1
     max_seconds: int = 600
+    max_times: int = 20
     max_digits: int = 4
+    max_words: int = 40
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,3 +42,31 @@ class DwellSettings:
     release: float = 0.2
     unread: float = 1.0
     timeout_s: float = 20.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Control:
+    """Words that are no part of a sentence, and those that need a second end word; None and empty: there are none.
+
+    cancel: drops the open sentence. kill: is heard in every state and issued at once. confirm: words whose sentences
+    need the end word twice; the name of a word that carries a number stands for all of its numbers.
+    """
+
+    cancel: str | None = None
+    kill: str | None = None
+    confirm: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Parameter:
+    """A setting of the robot: what INCREASE and DECREASE change it by, and from where to where.
+
+    The decoder does not know its value and passes the change on; the robot reads these. None: not told.
+    """
+
+    name: str
+    unit: str | None = None
+    step: float | None = None
+    minimum: float | None = None
+    maximum: float | None = None
+    default: float | None = None

@@ -59,6 +59,15 @@ class Decoder:
         """The open sentence so far, digits joined; empty while idle."""
         return "" if self._sentence is None else self._sentence.text(self._grammar.vocabulary.join)
 
+    @property
+    def expected(self) -> str:
+        """What may follow, for the diver: "GO or a digit"."""
+        if self._sentence is None:
+            return name_expected(self._grammar.table.transitions[0])
+        if self._sentence.complete is not None:
+            return self._grammar.end
+        return name_expected(self._grammar.table.transitions[self._sentence.state])
+
     def step(
         self,
         left: str | None,
@@ -145,7 +154,7 @@ class Decoder:
         if word in row:
             self._accept(hold, word, row[word], self._begin(hold))
         else:
-            detail = f"{word} opens no sentence; expected {name_expected(row)}"
+            detail = f"{word} opens no sentence; expected {self.expected}"
             self._reporter.notice("out_of_order", detail)
 
     def _begin(self, hold: Hold) -> Sentence:
@@ -160,7 +169,7 @@ class Decoder:
         if word in row:
             self._accept(hold, word, row[word], sentence)
         else:
-            detail = f"{word} cannot follow {self.sentence}; expected {name_expected(row)}"
+            detail = f"{word} cannot follow {self.sentence}; expected {self.expected}"
             text = spell([*sentence.words, word], self._grammar.vocabulary.join)
             self._drop("out_of_order", text, detail)
 

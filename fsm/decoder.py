@@ -8,7 +8,7 @@ from lightgesture.fsm.forms import MENU, Form, Item, spell
 from lightgesture.fsm.grammar import Grammar
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
 from lightgesture.fsm.sentence import Sentence, name_expected, needs_confirmation, objection
-from lightgesture.fsm.table import bind
+from lightgesture.fsm.table import Arguments, bind
 from lightgesture.fsm.timeline import Timeline
 from lightgesture.fsm.unread import UnreadSigning
 
@@ -57,7 +57,7 @@ class Decoder:
     @property
     def sentence(self) -> str:
         """The open sentence so far, digits joined; empty while idle."""
-        return "" if self._sentence is None else self._sentence.text(self._grammar.vocabulary.join)
+        return "" if self._sentence is None else self._sentence.text
 
     @property
     def expected(self) -> str:
@@ -192,7 +192,8 @@ class Decoder:
 
     def _complete(self, hold: Hold, word: str, form: Form, sentence: Sentence) -> None:
         """A sentence is complete: issue it, ask for its second end word, or reject it for what it says."""
-        refused = objection(bind(form, sentence.words, self._grammar.vocabulary), self._grammar)
+        arguments = bind(form, sentence.words, self._grammar.vocabulary)
+        refused = objection(arguments, self._grammar)
         if refused is None and needs_confirmation(form, sentence.words, self._grammar.control):
             sentence.complete = form
             self._reporter.word(hold, word, self.sentence)
@@ -201,7 +202,7 @@ class Decoder:
             return
         self._reporter.word(hold, word, IDLE)
         if refused is None:
-            self._issue(form, sentence)
+            self._issue(form, sentence, arguments)
         else:
             self._drop(refused[0], self.sentence, refused[1])
 
@@ -209,7 +210,7 @@ class Decoder:
         """A word after a complete sentence that waits for its second end word."""
         if word == self._grammar.end:
             self._reporter.word(hold, word, IDLE)
-            self._issue(form, sentence)
+            self._issue(form, sentence, bind(form, sentence.words, self._grammar.vocabulary))
         else:
             detail = f"{word} instead of {self._grammar.end} for {self.sentence}"
             self._drop("unconfirmed", self.sentence, detail)
@@ -222,10 +223,9 @@ class Decoder:
         sentence = self._begin(hold)
         sentence.add(word, hold, 0, self._timeline.now_s, None)
         alone = Form(kind="kill", sentence=word, items=(Item(frozenset([word]), None, False),))
-        self._issue(alone, sentence)
+        self._issue(alone, sentence, Arguments(action=word))
 
-    def _issue(self, form: Form, sentence: Sentence) -> None:
-        arguments = bind(form, sentence.words, self._grammar.vocabulary)
+    def _issue(self, form: Form, sentence: Sentence, arguments: Arguments) -> None:
         self._reporter.instruction(form, sentence, self.sentence, arguments)
         self._sentence = None
         self._show(None)

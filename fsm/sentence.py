@@ -16,7 +16,8 @@ class Sentence:
 
     state: of the grammar's table. touched_s: when its last word was accepted, seconds of the decoder's
     timeline. digits: length of the number that is being signed. confidence: the lowest of its words'.
-    complete: the form that it has, once it is complete and waits to be confirmed.
+    complete: the form that it has, once it is complete and waits to be confirmed. text: the words so far, digits
+    joined.
     """
 
     start_frame: int
@@ -27,6 +28,7 @@ class Sentence:
     confidence: float = 1.0
     words: list[str] = field(default_factory=list)
     complete: Form | None = None
+    text: str = ""
 
     def add(self, word: str, hold: Hold, state: int, now_s: float, join: str | None) -> None:
         """Take in a word that has its place."""
@@ -38,10 +40,7 @@ class Sentence:
             self.digits += 1
         elif word != join:
             self.digits = 0
-
-    def text(self, join: str | None) -> str:
-        """The sentence so far, digits joined."""
-        return spell(self.words, join)
+        self.text = spell(self.words, join)
 
 
 def objection(arguments: Arguments, grammar: Grammar) -> tuple[str, str] | None:

@@ -165,7 +165,7 @@ def bind(form: Form, words: Sequence[str], vocabulary: Vocabulary) -> Arguments:
             digits = numbers.pop()[1] if before.inside != "before" and before.item == place.item else ""
             numbers.append((place.item, digits + word))
     is_menu = plain[0][1] == MENU
-    inner = plain if is_menu or len(plain) == 1 else plain[1:-1]  # without the sentinels
+    inner = plain if is_menu else plain[1:-1]  # without the sentinels
     single = [word for item, word in inner if not form.is_repeated(item)]
     carried = [number for _, number in map(split_carrier, single) if number is not None]
     slots = {str(form.items[item].slot): int(text) for item, text in numbers if not form.is_repeated(item)}

@@ -91,10 +91,11 @@ def _read_pairs(
 ) -> dict[Pair, str]:
     pairs: dict[Pair, str] = {}
     for key, word in entries.items():
-        pair = _read_pair(key_path(table, key), key, tokens, defects)
+        place = key_path(*table.split("."), key)
+        pair = _read_pair(place, key, tokens, defects)
         if pair in pairs:
             reason, remedy = "pair used twice", f"keep one, here or for {pairs[pair]}"
-            defects.append(Defect(key_path(table, key), reason, remedy))
+            defects.append(Defect(place, reason, remedy))
         elif pair is not None:
             pairs[pair] = word
     return pairs

@@ -42,7 +42,7 @@ class Decoder:
     ) -> None:
         self._grammar = grammar
         self._dwell = make_dwell(grammar.dwell, hold, hold_seconds)
-        self._unread = UnreadSigning(grammar.dwell.unread * self._dwell.need)
+        self._unread = UnreadSigning(grammar.dwell.unread * self._dwell.need, self._dwell.release)
         self._timeline = Timeline()
         self._reporter = Reporter(source)
         self._sentence: Sentence | None = None
@@ -104,7 +104,7 @@ class Decoder:
         elif self._sentence is not None and (pair is None or pair != dwell.spent):
             is_left = left is not None if left_seen is None else left_seen
             is_right = right is not None if right_seen is None else right_seen
-            if (is_left or is_right) and self._unread.process(pair, dwell.pair, dwell.step):
+            if (is_left or is_right) and self._unread.process(pair, dwell.step):
                 self._miss()
         is_worth_showing = dwell.pair is not None or reporter.is_growth_shown
         if is_worth_showing and now_s - reporter.shown_s >= DISPLAY_INTERVAL_S:

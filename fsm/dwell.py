@@ -22,8 +22,8 @@ TOLERANCE_S = 0.001
 LONGEST_GAP = 0.5
 """Share of a timed hold that may lie between two frames: what was not watched for longer was not held."""
 
-DOUBT = 0.5
-"""What a frame without a pair takes from the evidence, as a probability: it speaks against no pair in particular."""
+DOUBT = 1.0
+"""What a frame without a pair takes from the evidence, as a probability: hands that left speak for no sign at all."""
 
 
 class Hold(NamedTuple):
@@ -63,12 +63,12 @@ class Dwell:
         "_longest_step",
         "_need",
         "_now_s",
-        "_release",
         "_start",
         "_timed",
         "_weighed",
         "need",
         "pair",
+        "release",
         "spent",
         "step",
     )
@@ -77,7 +77,7 @@ class Dwell:
         tolerance = TOLERANCE_S if timed else 0.0
         self.need = need
         self._need = need - tolerance
-        self._release = min(release, need) - tolerance
+        self.release = min(release, need) - tolerance
         self._timed = timed
         self._weighed = weighed
         self._start = 0.0 if timed else 1.0
@@ -157,7 +157,7 @@ class Dwell:
             return True
         self._absent += self.step if self._is_absent or self._weighed else self._start
         self._is_absent = True
-        if self._absent >= self._release:
+        if self._absent >= self.release:
             self.spent = None
         return False
 

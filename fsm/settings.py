@@ -32,7 +32,8 @@ class DwellSettings:
     anything else, come to `hold_seconds`. hold: frames, 1 to 1000; hold_seconds: 0.05 to 60. More gives fewer
     false words and slower signing. release: fraction of the hold, 0 to 1 and at least one frame, that a pair must be
     absent before it counts again; less lets a flicker double a word. unread: how long, as a multiple of the hold, hands
-    may be seen between two words without a word: more loses a sentence less often, and a sign of it more often.
+    may be seen between two words without a word: more loses a sentence less often, and a sign of it more often. It must
+    be less than a hold and two passages from sign to sign, and more than one passage.
     timeout_s: seconds without an accepted word that drop an open sentence.
     """
 
@@ -40,7 +41,7 @@ class DwellSettings:
     hold: int = 15
     hold_seconds: float = 0.5
     release: float = 0.2
-    unread: float = 1.0
+    unread: float = 1.2
     timeout_s: float = 20.0
 
 

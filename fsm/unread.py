@@ -11,14 +11,16 @@ from lightgesture.fsm.events import Pair
 class UnreadSigning:
     """Adds up how long hands were seen since the last word without saying one.
 
-    longest: how much of it may be, in the dwell's unit (frames or seconds). The hold that is growing does not count, as
-    long as it may still become a word.
+    longest: how much of it may be, in the dwell's unit (frames or seconds). release: how long a pair must be absent to
+    be another sign when it comes again. What a pair has been shown does not count as long as it is there, for it may
+    still become a word; once it is gone for `release`, it was a sign that nobody read.
     """
 
-    __slots__ = ("_amount", "_growing", "_longest", "_pair")
+    __slots__ = ("_absent", "_amount", "_longest", "_pair", "_release", "_shown")
 
-    def __init__(self, longest: float) -> None:
+    def __init__(self, longest: float, release: float) -> None:
         self._longest = longest
+        self._release = release
         self.reset()
 
     def reset(self) -> None:
@@ -27,21 +29,22 @@ class UnreadSigning:
         self.pass_over()
 
     def pass_over(self) -> None:
-        """The growing hold was long enough, and the diver was told what is wrong with it."""
-        self._growing = 0.0
+        """What was shown was long enough, and the diver was told what is wrong with it."""
         self._pair: Pair | None = None
+        self._shown = 0.0
+        self._absent = 0.0
 
-    def process(self, pair: Pair | None, growing: Pair | None, step: float) -> bool:
-        """Take in a frame in which hands are seen; whether a sign has been missed.
-
-        pair: what they show. growing: the pair whose hold is growing. step: what the frame stands for.
-        """
-        if growing != self._pair:
-            self._amount += self._growing
-            self._growing = 0.0
-            self._pair = growing
-        if pair is not None and pair == growing:
-            self._growing += step
+    def process(self, pair: Pair | None, step: float) -> bool:
+        """Take in a frame in which hands show `pair`, and which stands for `step`; whether a sign has been missed."""
+        if pair is None or pair != self._pair:
+            self._absent += step
+            if self._pair is None or self._absent >= self._release:
+                self._amount += self._shown
+                self._pair = pair
+                self._shown = 0.0
+        if pair is not None and pair == self._pair:
+            self._shown += step
+            self._absent = 0.0
         else:
             self._amount += step
         return self._amount > self._longest

@@ -11,7 +11,7 @@ from lightgesture.fsm.frames import check_frame
 from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
 from lightgesture.fsm.schema import GrammarFile
 from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
-from lightgesture.fsm.table import Table, check_places, compile_table
+from lightgesture.fsm.table import Table, compile_table, walk
 
 
 def build(document: dict[str, Any], file: str) -> Grammar:
@@ -140,7 +140,7 @@ def _read_forms(content: GrammarFile, vocabulary: Vocabulary, defects: list[Defe
         try:
             form = parse_form(entry.kind, entry.sentence, vocabulary, entry.confirm)
             check_frame(form, content.sentinels.start, content.sentinels.end, content.sentinels.join)
-            check_places(form, vocabulary)
+            walk(form, vocabulary)
         except FormError as error:
             defects.append(Defect(key_path("forms", index, "sentence"), error.reason, error.remedy))
         else:

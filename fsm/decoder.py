@@ -192,7 +192,7 @@ class Decoder:
 
     def _complete(self, hold: Hold, word: str, form: Form, sentence: Sentence) -> None:
         """A sentence is complete: issue it, ask for its second end word, or reject it for what it says."""
-        arguments = bind(form, sentence.words, self._grammar.vocabulary)
+        arguments = bind(form, sentence.words, self._grammar.table)
         refused = objection(arguments, self._grammar)
         if refused is None and needs_confirmation(form, sentence.words, self._grammar.control):
             sentence.complete = form
@@ -210,7 +210,7 @@ class Decoder:
         """A word after a complete sentence that waits for its second end word."""
         if word == self._grammar.end:
             self._reporter.word(hold, word, IDLE)
-            self._issue(form, sentence, bind(form, sentence.words, self._grammar.vocabulary))
+            self._issue(form, sentence, bind(form, sentence.words, self._grammar.table))
         else:
             detail = f"{word} instead of {self._grammar.end} for {self.sentence}"
             self._drop("unconfirmed", self.sentence, detail)

@@ -100,8 +100,8 @@ class Dwell:
 
     @property
     def progress(self) -> float:
-        """How far the hold has grown, 0 to 1."""
-        return max(0.0, min(1.0, self._extent / self.need))
+        """How far the hold that is growing has grown, 0 to 1."""
+        return self._extent / self.need
 
     def process(
         self, pair: Pair | None, confidence: float, frame: int, time_s: float, now_s: float

@@ -17,15 +17,21 @@ class Place(NamedTuple):
     inside: str = "before"  # "before", "digit": after a digit, "join": after the joining word
 
 
+Walk = Mapping[Place, Mapping[str, Place]]
+"""Of one form: place -> word -> the place that it leads to."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
     """Deterministic transitions: state 0 is idle, `transitions[state][word]` the next state.
 
-    accepting: state -> the form that a sentence ending there has.
+    accepting: state -> the form that a sentence ending there has. walks: by the sentence of a form, where each word
+    leads from each of its places.
     """
 
     transitions: tuple[Mapping[str, int], ...]
     accepting: Mapping[int, Form]
+    walks: Mapping[str, Walk]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,14 +96,16 @@ def _next_items(form: Form, index: int) -> list[int]:
     return found
 
 
-def check_places(form: Form, vocabulary: Vocabulary) -> None:
-    """FormError: a word of the form could be read in two ways somewhere."""
-    known = {Place(0)}
+def walk(form: Form, vocabulary: Vocabulary) -> Walk:
+    """All places of a form and where each word leads. FormError: somewhere a word could be read in two ways."""
+    found: dict[Place, Mapping[str, Place]] = {}
     waiting = [Place(0)]
     while waiting:
-        new = {*next_places(form, waiting.pop(), vocabulary).values()} - known
-        known |= new
-        waiting += new
+        place = waiting.pop()
+        if place not in found:
+            found[place] = next_places(form, place, vocabulary)
+            waiting += found[place].values()
+    return found
 
 
 def compile_table(
@@ -109,6 +117,7 @@ def compile_table(
     can be read in two ways, two forms read the same sentence and nothing takes them, or the table grows beyond
     MAX_TRANSITIONS.
     """
+    walks = [walk(form, vocabulary) for form in forms]
     start = tuple((index, Place(0)) for index in range(len(forms)))
     numbers = {start: 0}
     queue = [start]
@@ -126,7 +135,7 @@ def compile_table(
         if complete:
             accepting[len(transitions)] = complete[0]
         row: dict[str, int] = {}
-        for word, key in sorted(_following(forms, places, vocabulary).items()):
+        for word, key in sorted(_following(walks, places).items()):
             if key not in numbers:
                 numbers[key] = len(queue)
                 queue.append(key)
@@ -137,28 +146,33 @@ def compile_table(
                 f"the forms need over {MAX_TRANSITIONS} transitions", "use fewer or shorter forms"
             )
         transitions.append(row)
-    return Table(transitions=tuple(transitions), accepting=accepting)
+    return Table(
+        transitions=tuple(transitions),
+        accepting=accepting,
+        walks={form.sentence: steps for form, steps in zip(forms, walks, strict=True)},
+    )
 
 
 _Places = tuple[tuple[int, Place], ...]
 """A state: for every form that still fits, its index and the place in it."""
 
 
-def _following(forms: Sequence[Form], places: _Places, vocabulary: Vocabulary) -> dict[str, _Places]:
+def _following(walks: Sequence[Walk], places: _Places) -> dict[str, _Places]:
     following: dict[str, list[tuple[int, Place]]] = {}
     for index, place in places:
-        for word, target in next_places(forms[index], place, vocabulary).items():
+        for word, target in walks[index][place].items():
             following.setdefault(word, []).append((index, target))
     return {word: tuple(targets) for word, targets in following.items()}
 
 
-def bind(form: Form, words: Sequence[str], vocabulary: Vocabulary) -> Arguments:
+def bind(form: Form, words: Sequence[str], table: Table) -> Arguments:
     """What the complete sentence `words`, accepted with `form`, says."""
+    steps = table.walks[form.sentence]
     numbers: list[tuple[int, str]] = []  # item and digits
     plain: list[tuple[int, str]] = []  # item and word
     place = Place(0)
     for word in words:
-        before, place = place, next_places(form, place, vocabulary)[word]
+        before, place = place, steps[place][word]
         if place.inside == "before":
             plain.append((place.item - 1, word))
         elif place.inside == "digit":

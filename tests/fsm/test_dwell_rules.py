@@ -68,6 +68,15 @@ def test_what_was_not_watched_for_half_a_hold_was_not_held(weighed):
     assert held == [0.96]
 
 
+def test_a_gap_of_just_half_a_hold_was_watched():
+    dwell = timed()
+    assert [dwell.process(A, 1.0, 0, now_s, now_s) is not None for now_s in (1.0, 1.25, 1.5)] == [
+        False,
+        False,
+        True,
+    ]
+
+
 @pytest.mark.parametrize("weighed", [False, True])
 def test_time_that_stands_still_holds_nothing(weighed):
     dwell = timed(weighed)

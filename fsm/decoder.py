@@ -86,7 +86,8 @@ class Decoder:
         token. Stamps that stand still, run back or are not finite are endured: no time passes.
         """
         reporter, dwell = self._reporter, self._dwell
-        reporter.events = events = []
+        events: list[Event] = []
+        reporter.events = events
         reporter.frame = reporter.frame + 1 if frame is None else frame
         if math.isfinite(time_s):
             reporter.time_s = time_s

@@ -69,11 +69,12 @@ def _backwards(place: _Place) -> list[tuple[int, str]]:
 def _remove(document: dict[str, Any], place: _Place) -> None:
     holder: Any = document
     for part in place[:-1]:
-        holder = holder[part] if isinstance(holder, list) or part in holder else {}
-    if isinstance(holder, list):
-        del holder[place[-1]]
+        holder = holder[part]
+    last = place[-1]
+    if isinstance(last, int):
+        del holder[last]
     else:
-        holder.pop(place[-1], None)
+        holder.pop(last, None)  # what is missing is a defect as well
 
 
 def _defect(detail: ErrorDetails) -> Defect:

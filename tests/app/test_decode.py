@@ -55,6 +55,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "selector": "learned",
         "profile": None,
         "hold": 3,
+        "hold_seconds": None,
         "grammar": "my.toml",
         "mirrored": True,
     }

@@ -82,6 +82,7 @@ def compile_grammar(content: GrammarFile, file: str, defects: list[Defect]) -> G
             cancel=content.control.cancel,
             kill=content.control.kill,
             confirm=frozenset(content.control.confirm),
+            confirm_unknown=content.control.confirm_unknown,
         ),
     )
 

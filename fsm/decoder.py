@@ -145,6 +145,8 @@ class Decoder:
 
     def _report_unknown(self, pair: Pair) -> None:
         self._unread.pass_over()
+        if self._sentence is not None:
+            self._sentence.has_unknown = True
         inside = self._sentence is not None and pair in self._grammar.idle_words
         place = "no word inside a sentence" if inside else "no word"
         self._reporter.notice("unknown_pair", f"{pair[0]},{pair[1]} is {place}; repeat it")
@@ -195,7 +197,7 @@ class Decoder:
         """A sentence is complete: issue it, ask for its second end word, or reject it for what it says."""
         arguments = bind(form, sentence.words, self._grammar.table)
         refused = objection(arguments, self._grammar)
-        if refused is None and needs_confirmation(form, sentence.words, self._grammar.control):
+        if refused is None and needs_confirmation(form, sentence, self._grammar.control):
             sentence.complete = form
             self._reporter.word(hold, word, self.sentence)
             self._reporter.notice("confirm", f"{self.sentence}: sign {self._grammar.end} again to confirm")

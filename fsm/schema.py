@@ -115,6 +115,7 @@ class ControlTable(_Table):
     cancel: Word | None = None
     kill: Word | None = None
     confirm: list[Word] = Field(default_factory=list, max_length=MAX_FORMS)
+    confirm_unknown: bool = False
 
 
 class MenuTable(_Table):

@@ -17,7 +17,7 @@ class Sentence:
     state: of the grammar's table. touched_s: when its last word was accepted, seconds of the decoder's
     timeline. digits: length of the number that is being signed. confidence: the lowest of its words'.
     complete: the form that it has, once it is complete and waits to be confirmed. text: the words so far, digits
-    joined.
+    joined. has_unknown: a pair was held in it that is no word.
     """
 
     start_frame: int
@@ -29,6 +29,7 @@ class Sentence:
     words: list[str] = field(default_factory=list)
     complete: Form | None = None
     text: str = ""
+    has_unknown: bool = False
 
     def add(self, word: str, hold: Hold, state: int, now_s: float, join: str | None) -> None:
         """Take in a word that has its place."""
@@ -58,10 +59,12 @@ def objection(arguments: Arguments, grammar: Grammar) -> tuple[str, str] | None:
     return None
 
 
-def needs_confirmation(form: Form, words: Iterable[str], control: Control) -> bool:
+def needs_confirmation(form: Form, sentence: Sentence, control: Control) -> bool:
     """Whether a complete sentence waits for a second end word."""
-    return form.confirm or any(
-        word in control.confirm or split_carrier(word)[0] in control.confirm for word in words
+    if form.confirm or (sentence.has_unknown and control.confirm_unknown):
+        return True
+    return any(
+        word in control.confirm or split_carrier(word)[0] in control.confirm for word in sentence.words
     )
 
 

@@ -50,12 +50,14 @@ class Control:
     """Words that are no part of a sentence, and those that need a second end word; None and empty: there are none.
 
     cancel: drops the open sentence. kill: is heard in every state and issued at once. confirm: words whose sentences
-    need the end word twice; the name of a word that carries a number stands for all of its numbers.
+    need the end word twice; the name of a word that carries a number stands for all of its numbers. confirm_unknown: so
+    do sentences in which a pair was held that is no word, for it may have been a word that was misread.
     """
 
     cancel: str | None = None
     kill: str | None = None
     confirm: frozenset[str] = frozenset()
+    confirm_unknown: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -90,10 +90,11 @@ class TestShow:
         assert [line for line in out if "complete: program, to be confirmed" in line]
         assert "  1  depth, unit m, step 0.5, minimum 0.0, maximum 40.0, default 2.0" in out
         assert "  1  surface" in out
-        assert [line.split() for line in out[-3:]] == [
+        assert [line.split() for line in out[-4:]] == [
             ["cancel", "CANCEL"],
             ["kill", "ABORT"],
             ["confirm", "SONAR"],
+            ["confirm_unknown", "False"],
         ]
 
     def test_words_in_short(self):

@@ -103,6 +103,36 @@ class TestConfirmation:
         assert pick(events, "notice", field="reason") == ["confirm"]
 
 
+class TestUnknownPairs:
+    """A word that is misread as a pair that is none is reported; a diver who does not look confirms nothing."""
+
+    @pytest.fixture
+    def told_of(self, write_grammar, pick):
+        """A function from pairs, and the setting, to what the diver is told."""
+
+        def decode(setting, *pairs):
+            path = write_grammar(("# [control]\n", f"[control]\nconfirm_unknown = {setting}\n"))
+            decoder = Decoder(load_grammar(path), hold=1)
+            events = []
+            for pair in pairs:
+                events += decoder.step(*pair.split(","), 0.0) + decoder.step(None, None, 0.0)
+            return told(events)
+
+        return decode
+
+    def test_sentence_with_one_waits_for_a_second_end_word(self, told_of):
+        assert told_of("true", "0,0", "5,5", "3,3", "ok,ok") == [
+            ("notice", "unknown_pair"),
+            ("notice", "confirm"),
+        ]
+        assert told_of("true", "0,0", "5,5", "3,3", "ok,ok", "ok,ok")[-1] == ("instruction", "STOP HOVER GO")
+
+    def test_other_sentences_do_not(self, told_of):
+        assert told_of("true", "3,3", "0,0", "5,5", "ok,ok")[1:] == [("instruction", "STOP HOVER GO")]
+        assert told_of("true", "0,0", "5,5", "3,3", "5,5", "0,0", "5,5", "ok,ok")[-1][0] == "instruction"
+        assert told_of("false", "0,0", "5,5", "3,3", "ok,ok")[-1] == ("instruction", "STOP HOVER GO")
+
+
 class TestCancel:
     @pytest.mark.parametrize("begun", ["STOP", "STOP HOVER 3", "CONTD PARAM_1", "STOP EXEC 1 GO"])
     def test_drops_the_open_sentence(self, sign, pick, begun):

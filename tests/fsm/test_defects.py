@@ -147,6 +147,15 @@ def test_each_defect_is_named(defects, old, new, expected):
     assert found[0].startswith(expected)
 
 
+def test_known_tokens_are_told_up_to_a_dozen(defects):
+    (told,) = defects(('"1,1" = 1', '"1,6" = 1'))
+    assert told.endswith("; use one of 0, 1, 2, 3, 4, 5, left, right, pic, ok")
+    (told,) = defects(('"1,1" = 1', '"1,x" = 1'), ('tokens = ["0",', 'tokens = ["6", "7", "8", "0",'))
+    assert told.endswith("; use one of 6, 7, 8, 0, 1, 2, 3, 4, 5, left, right, pic, ...")
+    (told,) = defects(('"1,1" = 1', '"1,x" = 1'), ('tokens = ["0",', 'tokens = ["6", "7", "0",'))
+    assert told.endswith(", pic, ok")
+
+
 def test_the_limits_of_a_parameter_themselves_are_allowed(defects):
     assert defects(("step = 0.5", "step = 40"), ("default = 2", "default = 40")) == []
     assert (

@@ -2,11 +2,12 @@
 
 from lightgesture.fsm.decoder import Decoder
 from lightgesture.fsm.events import Event, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.grammar import Grammar, GrammarError
-from lightgesture.fsm.load import load_grammar
+from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.load import inspect_grammar, load_grammar
 
 __all__ = [
     "Decoder",
+    "Defect",
     "Event",
     "Grammar",
     "GrammarError",
@@ -15,5 +16,6 @@ __all__ = [
     "Rejected",
     "State",
     "Word",
+    "inspect_grammar",
     "load_grammar",
 ]

@@ -3,55 +3,87 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lightgesture.fsm.checks import check_control, check_limits, check_parameters, check_sentinels, check_use
+from lightgesture.fsm.document import key_path, parse_document
 from lightgesture.fsm.events import Pair
-from lightgesture.fsm.forms import Form, FormError, Vocabulary, parse_form
-from lightgesture.fsm.grammar import DwellSettings, Grammar, GrammarError, Limits
-from lightgesture.fsm.schema import Defect, GrammarFile, key_path, parse_document
-from lightgesture.fsm.table import Table, compile_table
+from lightgesture.fsm.forms import MENU, SELECT, Form, FormError, Item, Vocabulary, parse_form
+from lightgesture.fsm.frames import check_frame
+from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.schema import GrammarFile
+from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.table import Table, compile_table, walk
 
 
 def build(document: dict[str, Any], file: str) -> Grammar:
     """Check and compile a parsed TOML document; GrammarError names its first defect and counts the rest."""
-    result = parse_document(document)
-    grammar = compile_grammar(result, file) if isinstance(result, GrammarFile) else result
-    if isinstance(grammar, Grammar):
+    grammar, defects = inspect(document, file)
+    if grammar is not None:
         return grammar
-    place, reason, remedy = grammar[0]
-    more = f" (and {len(grammar) - 1} more)" if len(grammar) > 1 else ""
+    place, reason, remedy, _ = defects[0]
+    more = f" (and {len(defects) - 1} more)" if len(defects) > 1 else ""
     raise GrammarError.at(file, place, reason, remedy + more)
 
 
-def compile_grammar(content: GrammarFile, file: str) -> Grammar | list[Defect]:
-    """The compiled grammar, or every defect that was found in the file's content."""
-    defects: list[Defect] = []
+def inspect(document: dict[str, Any], file: str) -> tuple[Grammar | None, list[Defect]]:
+    """The compiled grammar of a document, None where a defect is fatal, and every defect, the fatal ones first.
+
+    What is wrong in the document is taken out of it.
+    """
+    content, defects = parse_document(document)
+    grammar = None if content is None else compile_grammar(content, file, defects)
+    defects.sort(key=lambda defect: not defect.is_fatal)
+    return grammar, defects
+
+
+def compile_grammar(content: GrammarFile, file: str, defects: list[Defect]) -> Grammar | None:
+    """The compiled grammar, None where one of the defects, to which those of the content are added, is fatal."""
     for index, token in enumerate(content.tokens):
         if token in content.tokens[:index]:
             defects.append(Defect(key_path("tokens", index), f"'{token}' stands twice", "keep one"))
     idle_pairs = _read_pairs("idle_pairs", content.idle_pairs, content.tokens, defects)
     pairs = _read_pairs("pairs", content.pairs, content.tokens, defects)
-    vocabulary = Vocabulary.of([*idle_pairs.values(), *pairs.values()], content.sentinels.join)
-    _check_sentinels(content, vocabulary, defects)
-    _check_limits(content, defects)
-    if defects:  # what follows would only repeat them
-        return defects
+    menu_pairs = _read_menu(content, idle_pairs, defects)
+    vocabulary = Vocabulary.of(
+        [*content.idle_pairs.values(), *content.pairs.values()], content.sentinels.join
+    )
+    check_sentinels(content, vocabulary, defects)
+    check_limits(content, defects)
+    check_parameters(content, defects)
+    check_control(content, vocabulary, defects)
     forms = _read_forms(content, vocabulary, defects)
+    if menu_pairs:
+        forms.append(_menu_form(menu_pairs))
     table = _compile(forms, vocabulary, defects)
-    if table is None:
-        return defects
-    _check_use(content, table, defects)
-    if defects:
-        return defects
+    # Where a form is missing, what it would have used is not the defect.
+    if table is not None and not any(defect.place.startswith("forms") for defect in defects):
+        check_use(content, forms, vocabulary, {**pairs, **idle_pairs}, defects)
+    if table is None or any(defect.is_fatal for defect in defects):
+        return None
+    control = {
+        pair: word for pair, word in pairs.items() if word in (content.control.kill, content.control.cancel)
+    }
     return Grammar(
         file=file,
         tokens=tuple(content.tokens),
         idle_words={**pairs, **idle_pairs},
         sentence_words=pairs,
+        menu_words={**menu_pairs, **control} if menu_pairs else {},
         vocabulary=vocabulary,
         table=table,
+        end=content.sentinels.end,
         programs={int(number): name for number, name in content.programs.items()},
-        parameters={int(number): name for number, name in content.parameters.items()},
+        parameters={
+            int(number): Parameter(**parameter.model_dump())
+            for number, parameter in content.parameters.items()
+        },
         limits=Limits(**content.limits.model_dump()),
         dwell=DwellSettings(**content.dwell.model_dump()),
+        control=Control(
+            cancel=content.control.cancel,
+            kill=content.control.kill,
+            confirm=frozenset(content.control.confirm),
+            confirm_unknown=content.control.confirm_unknown,
+        ),
     )
 
 
@@ -59,56 +91,57 @@ def _read_pairs(
     table: str, entries: Mapping[str, str], tokens: list[str], defects: list[Defect]
 ) -> dict[Pair, str]:
     pairs: dict[Pair, str] = {}
-    known = ", ".join(tokens)
     for key, word in entries.items():
-        place = key_path(table, key)
-        left, comma, right = (part.strip() for part in key.partition(","))
-        unknown = [token for token in (left, right) if token not in tokens]
-        if not comma:
-            defects.append(Defect(place, "is no pair", 'write "left hand,right hand", such as "ok,5"'))
-        elif unknown:
-            defects.append(Defect(place, f"unknown token '{unknown[0][:40]}'", f"use one of {known}"))
-        elif (left, right) in pairs:
-            defects.append(Defect(place, "pair used twice", f"keep one, here or for {pairs[left, right]}"))
-        else:
-            pairs[left, right] = word
+        place = key_path(*table.split("."), key)
+        pair = _read_pair(place, key, tokens, defects)
+        if pair in pairs:
+            reason, remedy = "pair used twice", f"keep one, here or for {pairs[pair]}"
+            defects.append(Defect(place, reason, remedy))
+        elif pair is not None:
+            pairs[pair] = word
     return pairs
 
 
-def _check_sentinels(content: GrammarFile, vocabulary: Vocabulary, defects: list[Defect]) -> None:
-    sentinels = content.sentinels
-    named = [(key_path("sentinels", "start", index), word) for index, word in enumerate(sentinels.start)]
-    named.append(("sentinels.end", sentinels.end))
-    if sentinels.join is not None:
-        named.append(("sentinels.join", sentinels.join))
-    seen: set[str] = set()
-    for place, word in named:
-        if word not in vocabulary.words:
-            defects.append(Defect(place, f"unknown word '{word}'", "give it a sign in [pairs]"))
-        elif word in seen:
-            defects.append(Defect(place, f"'{word}' is a sentinel twice", "give each of them its own word"))
-        elif word in vocabulary.digits:
-            defects.append(Defect(place, f"'{word}' is a digit", "use a word in capitals"))
-        seen.add(word)
-    for key, word in content.idle_pairs.items():
-        if word not in sentinels.start:
-            remedy = "use one of sentinels.start, or move it to [pairs]"
-            defects.append(Defect(key_path("idle_pairs", key), f"'{word}' opens no sentence", remedy))
+def _read_pair(place: str, key: str, tokens: list[str], defects: list[Defect]) -> Pair | None:
+    left, comma, right = (part.strip() for part in key.partition(","))
+    unknown = [token for token in (left, right) if token not in tokens]
+    if not comma:
+        defects.append(Defect(place, "is no pair", 'write "left hand,right hand", such as "ok,5"'))
+    elif unknown:
+        known = ", ".join(tokens[:12]) + (", ..." if len(tokens) > 12 else "")
+        defects.append(Defect(place, f"unknown token '{unknown[0][:40]}'", f"use one of {known}"))
+    else:
+        return left, right
+    return None
 
 
-def _check_limits(content: GrammarFile, defects: list[Defect]) -> None:
-    limits = content.limits
-    if limits.min_seconds > limits.max_seconds:
-        reason = f"{limits.min_seconds} is above max_seconds = {limits.max_seconds}"
-        defects.append(Defect("limits.min_seconds", reason, "swap or correct them"))
+def _read_menu(content: GrammarFile, idle_pairs: dict[Pair, str], defects: list[Defect]) -> dict[Pair, str]:
+    """The menu's pairs; the one that opens it joins those that are read while idle."""
+    if content.menu is None:
+        return {}
+    opening = _read_pair("menu.open", content.menu.open, content.tokens, defects)
+    if opening in idle_pairs:
+        reason = f"the pair is {idle_pairs[opening]} while idle"
+        defects.append(Defect("menu.open", reason, "use another, or remove it from [idle_pairs]"))
+    elif opening is not None:
+        idle_pairs[opening] = MENU
+    entries = {key: f"{SELECT} {number}" for key, number in content.menu.entries.items()}
+    return _read_pairs("menu.entries", entries, content.tokens, defects)
+
+
+def _menu_form(pairs: Mapping[Pair, str]) -> Form:
+    """A sentence of two words that needs no end word: the published decoder's."""
+    opening, entry = Item(frozenset([MENU]), None, False), Item(frozenset(pairs.values()), None, False)
+    return Form(kind="menu", sentence=f"{MENU} {SELECT} n", items=(opening, entry))
 
 
 def _read_forms(content: GrammarFile, vocabulary: Vocabulary, defects: list[Defect]) -> list[Form]:
     forms: list[Form] = []
     for index, entry in enumerate(content.forms):
         try:
-            form = parse_form(entry.kind, entry.sentence, vocabulary)
-            _check_frame(form, content)
+            form = parse_form(entry.kind, entry.sentence, vocabulary, entry.confirm)
+            check_frame(form, content.sentinels.start, content.sentinels.end, content.sentinels.join)
+            walk(form, vocabulary)
         except FormError as error:
             defects.append(Defect(key_path("forms", index, "sentence"), error.reason, error.remedy))
         else:
@@ -116,39 +149,15 @@ def _read_forms(content: GrammarFile, vocabulary: Vocabulary, defects: list[Defe
     return forms
 
 
-def _check_frame(form: Form, content: GrammarFile) -> None:
-    """Start sentinel, action, ..., end sentinel: so that nothing is ever issued without all three."""
-    start, end = frozenset(content.sentinels.start), frozenset([content.sentinels.end])
-    if len(form.items) < 3:
-        raise FormError(f"'{form.sentence}' is too short", "write start word, action and end word")
-    first, action, last = form.items[0], form.items[1], form.items[-1]
-    if first.optional or not first.words or not first.words <= start:
-        raise FormError(f"'{form.sentence}' has no start word", "begin with " + "|".join(sorted(start)))
-    if last.optional or last.words != end:
-        raise FormError(f"'{form.sentence}' has no end word", f"end with {content.sentinels.end}")
-    if action.optional or action.slot:
-        raise FormError(f"'{form.sentence}' has no action", "put a word after the start word")
-    reserved = start | end | {content.sentinels.join}
-    for item in form.items[1:-1]:
-        if item.words & reserved:
-            word = min(item.words & reserved)
-            raise FormError(f"'{word}' stands inside '{form.sentence}'", "use sentinels at the ends alone")
-
-
 def _compile(forms: list[Form], vocabulary: Vocabulary, defects: list[Defect]) -> Table | None:
-    if defects:
-        return None
+    """The table of the forms that can be read; None where there are none, or too many."""
+    ambiguous: list[tuple[Form, Form]] = []
     try:
-        return compile_table(forms, vocabulary)
+        table = compile_table(forms, vocabulary, ambiguous) if forms else None
     except FormError as error:
         defects.append(Defect("forms", error.reason, error.remedy))
         return None
-
-
-def _check_use(content: GrammarFile, table: Table, defects: list[Defect]) -> None:
-    used = {word for row in table.transitions for word in row}
-    for name, entries in (("idle_pairs", content.idle_pairs), ("pairs", content.pairs)):
-        for key, word in entries.items():
-            if word not in used:
-                remedy = "put it into a sentence of [[forms]] or remove the pair"
-                defects.append(Defect(key_path(name, key), f"no form uses '{word}'", remedy))
+    for one, other in ambiguous:
+        reason = f"'{one.sentence}' and '{other.sentence}' read the same sentence"
+        defects.append(Defect("forms", reason, "keep one of them"))
+    return table

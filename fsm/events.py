@@ -4,6 +4,7 @@ Common fields: `source` names the input (None: not named), `frame` is the 0-base
 and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
@@ -21,7 +22,7 @@ def _record(event: Any) -> dict[str, Any]:
     return {item.name: _plain(getattr(event, item.name)) for item in fields(event)}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class Growth:
     """A hold that is growing: `word` is what it would be read as (None: no word), `progress` 0 to 1."""
 
@@ -29,8 +30,25 @@ class Growth:
     word: str | None
     progress: float
 
+    def __init__(self, *, pair: Pair, word: str | None, progress: float) -> None:
+        _set_growth[0](self, pair)
+        _set_growth[1](self, word)
+        _set_growth[2](self, progress)
+
     def to_dict(self) -> dict[str, Any]:
         return _record(self)
+
+
+def _setters(record: type) -> tuple[Callable[[Any, Any], None], ...]:
+    """What sets the fields of a frozen, slotted record, in order.
+
+    Those that a dataclass makes look each field up by its name. Records for displays are made in the midst of a hold,
+    several a second, and take half as long this way.
+    """
+    return tuple(getattr(record, item.name).__set__ for item in fields(record))
+
+
+_set_growth = _setters(Growth)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,10 +76,13 @@ class Word:
 class Instruction:
     """A complete sentence, from its start word to its end word, that makes sense.
 
+    Only the kinds "kill" and "menu", where a grammar file asks for them, have no such frame.
+
     start_frame, start_time_s: first frame of the hold that accepted the start word.
     text: the sentence with digits joined; words: the words as signed.
     kind: the form's kind. action: first word after the start word. change: second one, if any.
-    duration_s: seconds. program, parameter: numbers that the grammar lists.
+    duration_s: seconds. program, parameter: numbers that the grammar lists; of the menu the program is the entry.
+    What a sentence may say several times, as between REPEAT and END, is only in the words.
     confidence: 0 to 1, the lowest of the words' confidences, for a sentence is as sure as its weakest
     sign, however long it is.
     """
@@ -90,7 +111,8 @@ class Instruction:
 class Rejected:
     """A sentence was dropped.
 
-    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout" or "cancelled".
+    reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled", "unread_sign" or
+    "unconfirmed".
     text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
     """
 
@@ -106,9 +128,12 @@ class Rejected:
         return _record(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class State:
-    """For displays: `state` is "idle" or "collecting", `sentence` the words so far, `dwell` the hold."""
+    """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
+
+    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word.
+    """
 
     type: Literal["state"] = field(default="state", init=False)
     source: str | None
@@ -118,16 +143,38 @@ class State:
     sentence: str
     dwell: Growth | None
 
+    def __init__(
+        self,
+        *,
+        source: str | None,
+        frame: int,
+        time_s: float,
+        state: str,
+        sentence: str,
+        dwell: Growth | None,
+    ) -> None:
+        set_type, set_source, set_frame, set_time, set_state, set_sentence, set_dwell = _set_state
+        set_type(self, "state")
+        set_source(self, source)
+        set_frame(self, frame)
+        set_time(self, time_s)
+        set_state(self, state)
+        set_sentence(self, sentence)
+        set_dwell(self, dwell)
+
     def to_dict(self) -> dict[str, Any]:
         return _record(self)
+
+
+_set_state = _setters(State)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Notice:
     """A sign that changed nothing.
 
-    reason: "unknown_pair" (held, but no word: repeat it) or "out_of_order" (a word that opens no
-    sentence while none is open).
+    reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
+    open) or "confirm" (the end word is wanted again).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)

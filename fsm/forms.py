@@ -5,8 +5,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-NUMBER_SLOTS = ("seconds", "program")
+NUMBER_SLOTS = ("seconds", "program", "times")
 """Arguments that are signed digit by digit."""
+
+MENU, SELECT = "MENU", "SELECT"
+"""The words of the menu: MENU, then SELECT and the number of the entry."""
+
+MAX_ITEMS = 64
+"""Most places of a form, so that a hostile file takes neither long nor much memory."""
 
 _CARRIED = "n"
 _DIGIT = re.compile(r"[0-9]")
@@ -62,11 +68,21 @@ class Vocabulary:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Form:
-    """A sentence form: its kind, its text as written and its places in order."""
+    """A sentence form: its kind, its text as written and its places in order.
+
+    repeated: the places that may come again, from the first up to but not including the second number, or None.
+    confirm: whether its sentences need the end word a second time.
+    """
 
     kind: str
     sentence: str
     items: tuple[Item, ...]
+    repeated: tuple[int, int] | None = None
+    confirm: bool = False
+
+    def is_repeated(self, item: int) -> bool:
+        """Whether the place with this number may come again."""
+        return self.repeated is not None and self.repeated[0] <= item < self.repeated[1]
 
 
 def is_digit(word: str) -> bool:
@@ -80,22 +96,43 @@ def split_carrier(word: str) -> tuple[str, int | None]:
     return (match[1], int(match[2])) if match else (word, None)
 
 
-def parse_form(kind: str, sentence: str, vocabulary: Vocabulary) -> Form:
-    """Read `A|B`, `[x]`, number slots and `NAME n`; FormError names the symbol that is wrong."""
-    symbols = sentence.split()
+def parse_form(kind: str, sentence: str, vocabulary: Vocabulary, confirm: bool = False) -> Form:
+    """Read `A|B`, `[x]`, `{...}`, number slots and `NAME n`; FormError names the symbol that is wrong."""
+    symbols = sentence.replace("{", " { ").replace("}", " } ").split()
     items: list[Item] = []
+    braces: list[int] = []
     for index, symbol in enumerate(symbols):
+        if symbol in ("{", "}"):
+            if symbol != "{}"[len(braces) % 2] or len(braces) == 2:
+                raise FormError(f"'{symbol}' is odd or nested", "write {...} once for what may come again")
+            braces.append(len(items))
+            continue
         if symbol == _CARRIED:
             if index == 0 or symbols[index - 1] not in vocabulary.carriers:
                 raise FormError("'n' follows no word that carries a number", "write it after such a word")
             continue
         carried = index + 1 < len(symbols) and symbols[index + 1] == _CARRIED
         items.append(_parse_symbol(symbol, carried, vocabulary))
+    if len(items) > MAX_ITEMS:
+        raise FormError(f"the form has over {MAX_ITEMS} places", "write several shorter forms")
     slots = [item.slot for item in items if item.slot]
     for slot in slots:
         if slots.count(slot) > 1:
             raise FormError(f"'{slot}' stands twice", "keep one")
-    return Form(kind=kind, sentence=sentence, items=tuple(items))
+    return Form(
+        kind=kind, sentence=sentence, items=tuple(items), repeated=_repeated(braces, items), confirm=confirm
+    )
+
+
+def _repeated(braces: list[int], items: list[Item]) -> tuple[int, int] | None:
+    if not braces:
+        return None
+    if len(braces) == 1:
+        raise FormError("'{' has no '}'", "write {...} for what may come again")
+    start, end = braces
+    if all(item.optional for item in items[start:end]):
+        raise FormError("'{...}' may be empty", "put a word into it that is not optional")
+    return start, end
 
 
 def _parse_symbol(symbol: str, carried: bool, vocabulary: Vocabulary) -> Item:

@@ -2,10 +2,27 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from lightgesture.fsm.events import Pair
 from lightgesture.fsm.forms import Vocabulary
+from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
 from lightgesture.fsm.table import Table
+
+
+class Defect(NamedTuple):
+    """One thing that is wrong: its full key path, why, and what to do.
+
+    is_fatal: the grammar cannot be used; else it can, but not everything in it.
+    """
+
+    place: str
+    reason: str
+    remedy: str
+    is_fatal: bool = True
+
+    def __str__(self) -> str:
+        return " ".join(f"{self.place}: {self.reason}; {self.remedy}".split())
 
 
 class GrammarError(ValueError):
@@ -19,49 +36,24 @@ class GrammarError(ValueError):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Limits:
-    """Bounds of numbers; what lies outside is rejected with reason "limit".
-
-    min_seconds, max_seconds: of a duration, seconds, both allowed. Ten minutes admit any number of
-    three digits and refuse a fourth that was misread. max_digits: of any number; one more rejects at once.
-    """
-
-    min_seconds: int = 1
-    max_seconds: int = 600
-    max_digits: int = 4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DwellSettings:
-    """When a sign counts.
-
-    hold: consecutive frames that a pair must be seen; more gives fewer false words and slower signing.
-    release: fraction of the hold, 0 to 1 and at least one frame, that a pair must be absent before it
-    counts again; less lets a flicker double a word. timeout_s: seconds without an accepted word that
-    drop an open sentence.
-    """
-
-    hold: int = 15
-    release: float = 0.2
-    timeout_s: float = 20.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Grammar:
     """A language, checked and compiled.
 
-    file: where it was read. tokens: names of the hand shapes. idle_words, sentence_words: pair -> word
-    while no sentence is open, and inside one. table: what may follow what. programs, parameters:
-    number -> name of those that the robot knows.
+    file: where it was read. tokens: names of the hand shapes. idle_words, sentence_words, menu_words: pair -> word
+    while no sentence is open, inside one, and in the menu. table: what may follow what. end: the word that closes a
+    sentence. programs, parameters: number -> those that the robot knows.
     """
 
     file: str
     tokens: tuple[str, ...]
     idle_words: Mapping[Pair, str]
     sentence_words: Mapping[Pair, str]
+    menu_words: Mapping[Pair, str]
     vocabulary: Vocabulary
     table: Table
+    end: str
     programs: Mapping[int, str]
-    parameters: Mapping[int, str]
+    parameters: Mapping[int, Parameter]
     limits: Limits
     dwell: DwellSettings
+    control: Control

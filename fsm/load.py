@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from lightgesture.fsm.grammar import Grammar, GrammarError
+from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
 
 BUNDLED = Path(__file__).with_name("grammar.toml")
 """The grammar that comes with the package."""
@@ -24,6 +24,18 @@ def load_grammar(path: str | os.PathLike[str] | None = None) -> Grammar:
     from lightgesture.fsm.build import build
 
     return build(document, file)
+
+
+def inspect_grammar(path: str | os.PathLike[str] | None = None) -> tuple[Grammar | None, list[Defect]]:
+    """All that is wrong with a grammar file, the fatal defects first, and its grammar where there are none of these.
+
+    GrammarError: the file cannot be read or is no TOML.
+    """
+    file = os.fsdecode(BUNDLED if path is None else path)
+    document = _parse(_read(file), file)
+    from lightgesture.fsm.build import inspect
+
+    return inspect(document, file)
 
 
 def _read(file: str) -> bytes:

@@ -3,18 +3,23 @@
 Imported only when a file is read: pydantic takes longer to import than the rest of the package.
 """
 
-import difflib
 import re
 from collections.abc import Callable
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic_core import PydanticCustomError
 
-from lightgesture.fsm.grammar import DwellSettings, Limits
+from lightgesture.fsm.settings import DwellSettings, Limits, Rule
 
 MAX_HOLD = 1000
 """Longest hold that a file may ask for, frames: 16 s at 60 frames a second."""
+
+MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
+"""Shortest and longest hold that a file may ask for, seconds."""
+
+MAX_UNREAD = 100.0
+"""Longest unread signing, holds: no time-out is later, so that this much turns the rule off."""
 
 MAX_TIMEOUT_S = 3600.0
 """Longest time-out, seconds."""
@@ -24,6 +29,12 @@ MAX_SECONDS = 86400
 
 MAX_DIGITS = 9
 """Most digits of a number that a file may allow."""
+
+MAX_TIMES = 10000
+"""Most repetitions that a file may allow."""
+
+MAX_WORDS = 1000
+"""Longest sentence that a file may allow, words."""
 
 MAX_TOKENS = 64
 """Most hand shapes; the square of it bounds the pairs, and so the words."""
@@ -37,26 +48,6 @@ MAX_TEXT = 1000
 
 _LIMITS = Limits()
 _DWELL = DwellSettings()
-
-
-class Defect(NamedTuple):
-    """One thing that is wrong: its full key path, why, and what to do."""
-
-    place: str
-    reason: str
-    remedy: str
-
-
-def key_path(*parts: str | int) -> str:
-    """`forms[1].sentence`, `pairs."ok,0"`: the path of a key as TOML would write it."""
-    path = ""
-    for part in parts:
-        if isinstance(part, int):
-            path += f"[{part}]"
-        else:
-            key = part if re.fullmatch(r"[A-Za-z0-9_-]+", part) else f'"{part[:80]}"'
-            path += f".{key}" if path else key
-    return path
 
 
 def _matching(pattern: str, noun: str, remedy: str) -> Callable[[str], str]:
@@ -115,6 +106,42 @@ class FormTable(_Table):
 
     kind: Kind
     sentence: Text
+    confirm: bool = False
+
+
+class ControlTable(_Table):
+    """[control]"""
+
+    cancel: Word | None = None
+    kill: Word | None = None
+    confirm: list[Word] = Field(default_factory=list, max_length=MAX_FORMS)
+    confirm_unknown: bool = False
+
+
+class MenuTable(_Table):
+    """[menu]"""
+
+    open: Text
+    entries: dict[Text, Annotated[int, Field(ge=0, le=999)]] = Field(min_length=1, max_length=MAX_TOKENS**2)
+
+
+class ParameterTable(_Table):
+    """[parameters.N]"""
+
+    name: Name
+    unit: Name | None = None
+    step: float | None = Field(default=None, gt=0, allow_inf_nan=False)
+    minimum: float | None = Field(default=None, allow_inf_nan=False)
+    maximum: float | None = Field(default=None, allow_inf_nan=False)
+    default: float | None = Field(default=None, allow_inf_nan=False)
+
+
+def _named(value: Any) -> Any:
+    return {"name": value} if isinstance(value, str) else value
+
+
+NamedParameter = Annotated[ParameterTable, BeforeValidator(_named)]
+"""A table, or the name alone."""
 
 
 class LimitsTable(_Table):
@@ -122,14 +149,21 @@ class LimitsTable(_Table):
 
     min_seconds: int = Field(default=_LIMITS.min_seconds, ge=0, le=MAX_SECONDS)
     max_seconds: int = Field(default=_LIMITS.max_seconds, ge=0, le=MAX_SECONDS)
+    max_times: int = Field(default=_LIMITS.max_times, ge=1, le=MAX_TIMES)
     max_digits: int = Field(default=_LIMITS.max_digits, ge=1, le=MAX_DIGITS)
+    max_words: int = Field(default=_LIMITS.max_words, ge=3, le=MAX_WORDS)
 
 
 class DwellTable(_Table):
     """[dwell]"""
 
+    rule: Rule = _DWELL.rule
     hold: int = Field(default=_DWELL.hold, ge=1, le=MAX_HOLD)
+    hold_seconds: float = Field(
+        default=_DWELL.hold_seconds, ge=MIN_HOLD_S, le=MAX_HOLD_S, allow_inf_nan=False
+    )
     release: float = Field(default=_DWELL.release, gt=0, le=1, allow_inf_nan=False)
+    unread: float = Field(default=_DWELL.unread, gt=0, le=MAX_UNREAD, allow_inf_nan=False)
     timeout_s: float = Field(default=_DWELL.timeout_s, gt=0, le=MAX_TIMEOUT_S, allow_inf_nan=False)
 
 
@@ -142,56 +176,20 @@ class GrammarFile(_Table):
     pairs: dict[Text, Word]
     forms: list[FormTable] = Field(min_length=1, max_length=MAX_FORMS)
     programs: dict[Number, Name] = Field(default_factory=dict)
-    parameters: dict[Number, Name] = Field(default_factory=dict)
+    parameters: dict[Number, NamedParameter] = Field(default_factory=dict)
+    control: ControlTable = Field(default_factory=ControlTable)
+    menu: MenuTable | None = None
     limits: LimitsTable = Field(default_factory=LimitsTable)
     dwell: DwellTable = Field(default_factory=DwellTable)
 
 
-_TABLES: dict[str, type[BaseModel]] = {
+TABLES: dict[str, type[BaseModel]] = {
     "sentinels": SentinelsTable,
     "forms": FormTable,
     "limits": LimitsTable,
     "dwell": DwellTable,
+    "control": ControlTable,
+    "menu": MenuTable,
+    "parameters": ParameterTable,
 }
-
-_EXPECTED = {
-    "string_type": ("is no text", "write it in quotes"),
-    "int_type": ("is no whole number", "write one without quotes and without a point"),
-    "float_type": ("is no number", "write one without quotes"),
-    "finite_number": ("is no finite number", "write one such as 20"),
-    "list_type": ("is no list", "write values in square brackets"),
-    "dict_type": ("is no table", "write a table of key = value lines"),
-    "model_type": ("is no table", "write a table of key = value lines"),
-    "missing": ("is missing", "add it, as in the bundled grammar"),
-}
-
-
-def parse_document(document: dict[str, Any]) -> GrammarFile | list[Defect]:
-    """The file's content with every single value checked, or all that is wrong with them."""
-    try:
-        return GrammarFile.model_validate(document)
-    except ValidationError as error:
-        return [_defect(detail) for detail in error.errors(include_url=False)]
-
-
-def _defect(detail: ErrorDetails) -> Defect:
-    parts = [part for part in detail["loc"] if part != "[key]"]
-    place = key_path(*parts)
-    kind = detail["type"]
-    if kind == "extra_forbidden":
-        return Defect(place, "unknown key", _known_keys(parts))
-    if kind in _EXPECTED:
-        return Defect(place, *_EXPECTED[kind])
-    context = detail.get("ctx", {})
-    if kind == "text":
-        return Defect(place, context["reason"], context["remedy"])
-    shown = repr(detail["input"])[:40]
-    reason = detail["msg"].replace("Input should be", "should be")
-    return Defect(place, f"{reason}, not {shown}", "change it")
-
-
-def _known_keys(parts: list[str | int]) -> str:
-    table = _TABLES[str(parts[0])] if len(parts) > 1 else GrammarFile
-    keys = list(table.model_fields)
-    close = difflib.get_close_matches(str(parts[-1]), keys, n=1)
-    return f"did you mean '{close[0]}'?" if close else "use " + ", ".join(keys)
+"""The tables of a file, by their names."""

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import is_digit, spell, split_carrier
+from lightgesture.fsm.forms import Form, is_digit, spell, split_carrier
 from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.settings import Control
 from lightgesture.fsm.table import Arguments
 
 
@@ -15,6 +16,8 @@ class Sentence:
 
     state: of the grammar's table. touched_s: when its last word was accepted, seconds of the decoder's
     timeline. digits: length of the number that is being signed. confidence: the lowest of its words'.
+    complete: the form that it has, once it is complete and waits to be confirmed. text: the words so far, digits
+    joined. has_unknown: a pair was held in it that is no word.
     """
 
     start_frame: int
@@ -24,6 +27,9 @@ class Sentence:
     digits: int = 0
     confidence: float = 1.0
     words: list[str] = field(default_factory=list)
+    complete: Form | None = None
+    text: str = ""
+    has_unknown: bool = False
 
     def add(self, word: str, hold: Hold, state: int, now_s: float, join: str | None) -> None:
         """Take in a word that has its place."""
@@ -35,23 +41,31 @@ class Sentence:
             self.digits += 1
         elif word != join:
             self.digits = 0
-
-    def text(self, join: str | None) -> str:
-        """The sentence so far, digits joined."""
-        return spell(self.words, join)
+        self.text = spell(self.words, join)
 
 
 def objection(arguments: Arguments, grammar: Grammar) -> tuple[str, str] | None:
     """Why a complete sentence makes no sense: reason and detail of the rejection; None: it does."""
-    program, parameter, seconds = arguments.program, arguments.parameter, arguments.seconds
     limits = grammar.limits
-    if program is not None and program not in grammar.programs:
-        return "unknown_program", f"program {program} is not in [programs]"
-    if parameter is not None and parameter not in grammar.parameters:
-        return "unknown_parameter", f"parameter {parameter} is not in [parameters]"
-    if seconds is not None and not limits.min_seconds <= seconds <= limits.max_seconds:
-        return "limit", f"{seconds} s is outside {limits.min_seconds} to {limits.max_seconds} s"
+    if arguments.parameter is not None and arguments.parameter not in grammar.parameters:
+        return "unknown_parameter", f"parameter {arguments.parameter} is not in [parameters]"
+    for slot, number in arguments.numbers:
+        if slot == "program" and number not in grammar.programs:
+            return "unknown_program", f"program {number} is not in [programs]"
+        if slot == "seconds" and not limits.min_seconds <= number <= limits.max_seconds:
+            return "limit", f"{number} s is outside {limits.min_seconds} to {limits.max_seconds} s"
+        if slot == "times" and not 1 <= number <= limits.max_times:
+            return "limit", f"{number} times is outside 1 to {limits.max_times} times"
     return None
+
+
+def needs_confirmation(form: Form, sentence: Sentence, control: Control) -> bool:
+    """Whether a complete sentence waits for a second end word."""
+    if form.confirm or (sentence.has_unknown and control.confirm_unknown):
+        return True
+    return any(
+        word in control.confirm or split_carrier(word)[0] in control.confirm for word in sentence.words
+    )
 
 
 def name_expected(words: Iterable[str]) -> str:

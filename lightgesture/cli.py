@@ -20,6 +20,7 @@ COMMANDS = {
     "recognize": "single pictures to hands and their tokens",
     "train": "build a model from labelled pictures",
     "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
+    "grammar": "check, show, draw or explain a grammar file",
     "synth": "render dives of a synthetic diver with their truth",
 }
 """Name of a command, which is its module in `lightgesture.commands` too, to its line of help."""

@@ -23,6 +23,7 @@ def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPict
             selector=settings.selector,
             profile=settings.profile,
             hold=settings.hold,
+            hold_seconds=settings.hold_seconds,
             grammar=settings.grammar,
             mirrored=settings.mirrored,
             source=source,

@@ -68,8 +68,8 @@ class Pipeline:
 
     model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
     see `features.selector`. profile: path of a colour profile of the diver's hands, which replaces the map of
-    skin colours; None for that map. hold: consecutive frames that a sign is held, None for the
-    grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
+    skin colours; None for that map. hold: consecutive frames that a sign is held; hold_seconds: seconds instead; both
+    None for the grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
     selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
     picture of every stage of every frame.
     Raises lightgesture.models.ModelError, lightgesture.features.selector_file.SelectorError,
@@ -83,6 +83,7 @@ class Pipeline:
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         hold: int | None = None,
+        hold_seconds: float | None = None,
         grammar: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
         source: str | None = None,
@@ -93,7 +94,7 @@ class Pipeline:
         self._colour = ColourStage(profile=None if profile is None else load_profile(profile))
         self._regions = RegionStage(selector)
         self._reading = ReadingStage(load_classifier(model))
-        self._grammar, self._hold = load_grammar(grammar), hold
+        self._grammar, self._hold, self._hold_seconds = load_grammar(grammar), hold, hold_seconds
         self._one_thread = OneBlasThread()
         self._begin(source, debug)
 
@@ -110,7 +111,9 @@ class Pipeline:
         """Everything that remembers the stream."""
         self._source, self._debug = source, debug
         self._tracks = TrackStage(selection=self._regions.settings)
-        self._decoder = Decoder(self._grammar, hold=self._hold, source=source)
+        self._decoder = Decoder(
+            self._grammar, hold=self._hold, hold_seconds=self._hold_seconds, source=source
+        )
         self._clock = StageClock()
         self._index = 0
         self._processed = 0
@@ -232,6 +235,8 @@ class Pipeline:
             left_confidence=left.confidence if left else 1.0,
             right_confidence=right.confidence if right else 1.0,
             frame=index,
+            left_seen=left is not None,
+            right_seen=right is not None,
         )
 
     def _frame_record(

@@ -1,6 +1,6 @@
 """The options of the decoding commands: one model feeds the command line, its help and `--config`.
 
-Precedence: command line, then configuration file, then the grammar's own `[dwell]` (for `hold`), then the
+Precedence: command line, then configuration file, then the grammar's own `[dwell]` (for the hold), then the
 defaults below.
 """
 
@@ -8,6 +8,7 @@ import argparse
 import difflib
 import os
 import tomllib
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -25,6 +26,9 @@ MAX_HOLD = 1000
 
 MAX_JOBS = 1024
 """Most worker processes."""
+
+MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
+"""Shortest and longest hold, seconds."""
 
 MAX_FPS = 1000.0
 """Highest rate of a folder of frames, frames a second."""
@@ -64,6 +68,15 @@ class DecodeSettings(BaseModel):
         only=STREAMS,
         ge=1,
         le=MAX_HOLD,
+    )
+    hold_seconds: float | None = _option(
+        None,
+        "seconds that a sign is held to count, whatever the camera's rate; in place of --hold",
+        "S",
+        only=STREAMS,
+        ge=MIN_HOLD_S,
+        le=MAX_HOLD_S,
+        allow_inf_nan=False,
     )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
     fps: float = _option(
@@ -112,6 +125,7 @@ class DecodeSettings(BaseModel):
 
 
 _PATHS = ("grammar", "profile", "out", "debug_dir", "model")
+_HOLDS = ("hold", "hold_seconds")
 _BUILT_IN_MODELS = ("svm", "cnn")
 
 
@@ -141,6 +155,10 @@ def load_settings(args: argparse.Namespace) -> DecodeSettings:
     known = {field.alias or name for name, field in DecodeSettings.model_fields.items()}
     given = {key: value for key, value in vars(args).items() if key in known}
     config = {} if args.config is None else read_config(args.config)
+    _check_holds(given, "", _flag)
+    for key, other in zip(_HOLDS, reversed(_HOLDS), strict=True):
+        if key in given:
+            config.pop(other, None)
     try:
         return DecodeSettings.model_validate({**config, **given})
     except ValidationError as error:
@@ -158,6 +176,7 @@ def read_config(path: str) -> dict[str, Any]:
         DecodeSettings.model_validate(content, strict=True)
     except ValidationError as error:
         raise UsageError(f"{path}: {_explain(error, str)}") from None
+    _check_holds(content, f"{path}: ", str)
     folder = os.path.dirname(path)
     for key in _PATHS:
         if key in content and content[key] not in _BUILT_IN_MODELS:
@@ -175,6 +194,11 @@ def _read_toml(path: str) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:  # TOML syntax is a ValueError too
         reason = str(error) or "too deeply nested"
         raise UsageError(f"{path}: is no valid TOML ({reason}); write lines such as hold = 10") from None
+
+
+def _check_holds(given: Mapping[str, Any], place: str, show: Callable[[str], str]) -> None:
+    if all(key in given for key in _HOLDS):
+        raise UsageError(f"{place}{' and '.join(map(show, _HOLDS))}: exclude each other; give one of them")
 
 
 def _flag(key: str) -> str:

@@ -64,16 +64,20 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "selector": "learned",
         "profile": None,
         "hold": 3,
+        "hold_seconds": None,
         "grammar": "my.toml",
         "mirrored": True,
     }
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
+    run("decode", make_folder("frames", 2), "--hold-seconds", 0.4)
+    assert fake.made[-1].options["hold_seconds"] == 0.4
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {
         "model": "svm",
         "selector": "learned",
         "profile": None,
         "hold": None,
+        "hold_seconds": None,
         "grammar": None,
         "mirrored": False,
     }

@@ -8,7 +8,7 @@ from lightgesture.decoding import SAMPLE
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.models import load_classifier
 from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
-from lightgesture.records import FrameRecord, SummaryRecord
+from lightgesture.records import FrameRecord, Hand, SummaryRecord
 from lightgesture.sources import open_source
 
 CLASSES = ("0", "5", "none")
@@ -255,3 +255,37 @@ class FakeRegions:
 
         region = HandRegion((60, 40, 30, 40), np.zeros((0, 2), np.int32), None, 0.9)
         return Candidates((region,), np.zeros((1, 1), np.float32), colour.source_size)
+
+
+def test_hands_in_view_that_are_not_read_drop_the_sentence():
+    """The decoder is told of them, so that a sign that nobody could read is not passed over."""
+    pipeline = Pipeline(hold=4)
+
+    def show(left, right, count):
+        hands = tuple(
+            Hand(side=side, token=token, confidence=0.9, box=(0, 0, 9, 9), track=1, reason=None)
+            for side, token in (("left", left), ("right", right))
+            if token != "out of view"
+        )
+        return [event for _ in range(count) for event in pipeline._decode(hands, 0.0, 0)]
+
+    for pair in (("0", "0"), ("5", "5")):
+        show(*pair, 4)
+    assert not [event for event in show("out of view", "out of view", 20) if event.type == "rejected"]
+    (rejected,) = [event for event in show("out of view", None, 5) if event.type == "rejected"]
+    assert (rejected.reason, rejected.text) == ("unread_sign", "STOP HOVER")
+
+
+def test_hold_may_be_given_in_seconds():
+    pipeline = Pipeline(hold_seconds=0.2)
+    hands = tuple(
+        Hand(side=side, token="0", confidence=0.9, box=(0, 0, 9, 9), track=1, reason=None)
+        for side in ("left", "right")
+    )
+    said = [
+        frame
+        for frame in range(5)
+        for event in pipeline._decode(hands, frame / 10, frame)
+        if event.type == "word"
+    ]
+    assert said == [2]

@@ -51,6 +51,7 @@ def test_every_option_may_stand_in_the_file(config):
         "profile": "/p.json",
         "grammar": "/g.toml",
         "hold": 9,
+        "hold_seconds": None,
         "mirrored": True,
         "fps": 12.5,
         "as_json": True,
@@ -63,6 +64,15 @@ def test_every_option_may_stand_in_the_file(config):
         "jobs": 3,
         "cluster": "tcp://h:1",
     }
+
+
+def test_one_hold_takes_the_place_of_the_other(config):
+    settings = load("--config", config("hold = 9\n"), "--hold-seconds", 0.4)
+    assert (settings.hold, settings.hold_seconds) == (None, 0.4)
+    settings = load("--config", config("hold-seconds = 0.4\n"), "--hold", 9)
+    assert (settings.hold, settings.hold_seconds) == (9, None)
+    with pytest.raises(UsageError, match="--hold and --hold-seconds: exclude each other; give one of them"):
+        load("--hold", 9, "--hold-seconds", 0.4)
 
 
 def test_paths_in_the_file_start_at_its_folder(config, tmp_path):
@@ -81,6 +91,8 @@ def test_a_byte_order_mark_does_no_harm(config):
     [
         ("hodl = 3", "hodl: unknown key; did you mean 'hold'?"),
         ("xyzzy = 3", "xyzzy: unknown key; known are model, selector, profile, grammar, hold"),
+        ("hold_seconds = 0", "hold_seconds: should be greater than or equal to 0.05, not 0"),
+        ("hold = 3\nhold-seconds = 1", "hold and hold_seconds: exclude each other; give one of them"),
         ("[decode]\nhold = 3", "decode: unknown key"),
         ('hold = "3"', "hold: should be a valid integer, not '3'"),
         ("hold = 0", "hold: should be greater than or equal to 1, not 0"),

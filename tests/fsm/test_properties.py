@@ -1,7 +1,9 @@
 """What must hold for any sequence of pairs."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -96,6 +98,46 @@ def test_a_sign_shorter_than_the_hold_says_nothing(pairs):
     assert not [event for event in events if event.type != "state"]
 
 
+RULES = {
+    "frames": {},
+    "seconds": {"hold_seconds": 0.5},
+    "evidence": {"hold_seconds": 0.4},
+}
+"""Dwell rules with the options of their decoders."""
+
+
+def language(rule):
+    """The bundled grammar with another rule of dwell."""
+    return replace(GRAMMAR, dwell=replace(GRAMMAR.dwell, rule=rule))
+
+
+SEEN = st.sampled_from([None, True, False])
+TOLD = st.tuples(WORDS, st.integers(1, 20), SEEN, SEEN, st.floats(0.3, 1.0))
+"""A pair, how long it is shown, which hands are in view, and its probability."""
+
+
+@given(st.lists(TOLD, max_size=25), st.sampled_from(sorted(RULES)), st.sampled_from([10, 30, 60]))
+@settings(max_examples=60, deadline=None)
+def test_no_rule_issues_what_was_not_signed(signs, rule, rate):
+    """The words of an instruction were accepted in this order since the last sentence ended, whatever was shown."""
+    decoder = Decoder(language(rule), **RULES[rule])
+    signed: list[str] = []
+    frame = 0
+    for (left, right), count, left_seen, right_seen, confidence in signs:
+        for _ in range(count):
+            events = decoder.step(left, right, frame / rate, confidence, 1.0, frame, left_seen, right_seen)
+            frame += 1
+            for event in events:
+                if event.type == "word":
+                    signed.append(event.word)
+                elif event.type == "instruction":
+                    assert list(event.words) == signed
+                    assert (signed[0] in ("STOP", "CONTD"), signed[-1]) == (True, "GO")
+                    signed = []
+                elif event.type == "rejected":
+                    signed = []
+
+
 def sentences(state: int, words: list[str], length: int) -> Iterator[list[str]]:
     """All complete sentences of at most `length` words that the table allows."""
     if state in GRAMMAR.table.accepting:
@@ -121,3 +163,41 @@ def test_every_sentence_up_to_five_words_decodes_to_itself():
             assert list(outcome[0].words) == words
         else:
             assert outcome[0].reason in ("unknown_program", "limit")
+
+
+def decode_by_rule(words, rule, rate, hold_s=0.7, passage_s=0.3):
+    """What is issued or rejected when words are signed at a rate of frames; hands are unread between two signs."""
+    inside = {word: pair for pair, word in GRAMMAR.sentence_words.items()} | {"STOP": ("0", "0")}
+    decoder = Decoder(language(rule), **(RULES[rule] or {"hold": rate // 2}))
+    events = []
+    frame = 0
+    for word in words:
+        for shown, seconds in ((None, passage_s), (inside[word], hold_s)):
+            for _ in range(round(seconds * rate)):
+                left, right = shown or (None, None)
+                events += decoder.step(left, right, round(frame / rate, 3), 0.95, 0.9, frame, True, True)
+                frame += 1
+    return [event for event in events if event.type in ("instruction", "rejected", "notice")]
+
+
+def check_every_sentence(length, rule, rate):
+    for words in sentences(0, [], length):
+        (outcome,) = decode_by_rule(words, rule, rate)
+        assert outcome.text == spell(words, "AND")
+        if outcome.type == "instruction":
+            assert list(outcome.words) == words
+        else:
+            assert outcome.reason in ("unknown_program", "limit")
+
+
+@pytest.mark.parametrize("rate", [10, 30, 60])
+@pytest.mark.parametrize("rule", sorted(RULES))
+def test_every_sentence_of_four_words_decodes_to_itself_at_any_rate(rule, rate):
+    check_every_sentence(4, rule, rate)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", [10, 30, 60])
+@pytest.mark.parametrize("rule", sorted(RULES))
+def test_every_sentence_of_six_words_decodes_to_itself_at_any_rate(rule, rate):
+    check_every_sentence(6, rule, rate)

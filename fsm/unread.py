@@ -1,0 +1,50 @@
+"""Signs that were shown and not read.
+
+Hands that pass from one sign to the next are unread for a moment; a sign that nobody could read makes the moment
+longer by its own hold. A sentence that went on after it would lack a word: "STOP HOVER 35 GO" without its digits is
+another instruction, and a valid one.
+"""
+
+from lightgesture.fsm.events import Pair
+
+
+class UnreadSigning:
+    """Adds up how long hands were seen since the last word without saying one.
+
+    longest: how much of it may be, in the dwell's unit (frames or seconds). release: how long a pair must be absent to
+    be another sign when it comes again. What a pair has been shown does not count as long as it is there, for it may
+    still become a word; once it is gone for `release`, it was a sign that nobody read.
+    """
+
+    __slots__ = ("_absent", "_amount", "_longest", "_pair", "_release", "_shown")
+
+    def __init__(self, longest: float, release: float) -> None:
+        self._longest = longest
+        self._release = release
+        self.reset()
+
+    def reset(self) -> None:
+        """A word was read: what comes now is new."""
+        self._amount = 0.0
+        self.pass_over()
+
+    def pass_over(self) -> None:
+        """What was shown was long enough, and the diver was told what is wrong with it."""
+        self._pair: Pair | None = None
+        self._shown = 0.0
+        self._absent = 0.0
+
+    def process(self, pair: Pair | None, step: float) -> bool:
+        """Take in a frame in which hands show `pair`, and which stands for `step`; whether a sign has been missed."""
+        if pair is None or pair != self._pair:
+            self._absent += step
+            if self._pair is None or self._absent >= self._release:
+                self._amount += self._shown
+                self._pair = pair
+                self._shown = 0.0
+        if pair is not None and pair == self._pair:
+            self._shown += step
+            self._absent = 0.0
+        else:
+            self._amount += step
+        return self._amount > self._longest

@@ -1,0 +1,66 @@
+"""`lightgesture grammar`: checks a grammar file, shows its table, draws its states, explains a sequence of pairs."""
+
+import argparse
+
+CHECK, SHOW, DRAW, EXPLAIN = "check", "show", "draw", "explain"
+ACTIONS = {
+    CHECK: "name all that is wrong with the file; 2 where there is anything",
+    SHOW: "print its signs, its table and its settings",
+    DRAW: "write its state graph as SVG or PNG",
+    EXPLAIN: "walk through a sequence of pairs step by step",
+}
+DEFAULT_OUT = "grammar.svg"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
+    for name, text in ACTIONS.items():
+        action = actions.add_parser(
+            name, help=text, description=f"grammar {name}: {text}", allow_abbrev=False
+        )
+        if name == EXPLAIN:
+            action.add_argument(
+                "sequence",
+                metavar="PAIRS",
+                help='pairs, the diver\'s left hand first, such as "ok,0 5,5 ok,ok"; each is held once and released',
+            )
+        action.add_argument("file", nargs="?", metavar="FILE", help="grammar file (default: the bundled one)")
+        action.add_argument("--grammar", metavar="FILE", help="the same, as the decoding commands have it")
+        if name == DRAW:
+            action.add_argument(
+                "--out",
+                metavar="FILE.svg|FILE.png",
+                default=DEFAULT_OUT,
+                help=f"picture to write (default: {DEFAULT_OUT})",
+            )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Do what was asked for; 0 when the grammar is sound, 2 when it is not."""
+    from lightgesture.console import print_line
+    from lightgesture.errors import ExitStatus, UsageError
+    from lightgesture.fsm import GrammarError, load_grammar
+    from lightgesture.grammar_report import check, explain, show
+
+    if args.file is not None and args.grammar is not None:
+        raise UsageError(f"{args.file}, {args.grammar}: two grammars; name one")
+    path = args.grammar if args.file is None else args.file
+    try:
+        if args.action == CHECK:
+            lines, is_sound = check(path)
+        else:
+            grammar, is_sound = load_grammar(path), True
+            if args.action == SHOW:
+                lines = show(grammar)
+            elif args.action == EXPLAIN:
+                lines = explain(grammar, args.sequence)
+            else:
+                from lightgesture.grammar_drawing import draw
+
+                lines = [draw(grammar, args.out)]
+    except GrammarError as error:
+        raise UsageError(str(error)) from error
+    for line in lines:
+        print_line(line)
+    return ExitStatus.OK if is_sound else ExitStatus.USAGE

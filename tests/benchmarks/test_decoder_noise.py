@@ -1,0 +1,102 @@
+"""The simulated misreadings behind the table of the dwell rules."""
+
+import random
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+
+from lightgesture.benchmarks.decoder_latency import (
+    ACCEPTING,
+    edges,
+    measure,
+    our_step,
+    recorded,
+    transitions_step,
+)
+from lightgesture.benchmarks.decoder_noise import (
+    RULES,
+    SENTENCES,
+    Hand,
+    NoiseSettings,
+    Outcome,
+    sign,
+    wrong_bound,
+)
+from lightgesture.fsm import load_grammar
+
+GRAMMAR = load_grammar()
+SETTINGS = NoiseSettings()
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
+def test_without_misreadings_every_sentence_is_read(rule):
+    outcome = Outcome()
+    for sentence in SENTENCES[::3]:
+        sign(sentence, rule, GRAMMAR, 0.0, 1.0, SETTINGS, random.Random(sentence), outcome)
+    assert (outcome.signed, outcome.right, outcome.wrong) == (17, 17, 0)
+    assert set(map(round, outcome.delays, [1] * 999)) <= {0.3, 0.4, 0.5}
+
+
+@pytest.mark.parametrize(("share", "burst"), [(0.05, 1.0), (0.2, 4.0), (0.1, 10.0)])
+def test_hands_go_wrong_as_often_and_as_long_as_asked(share, burst):
+    hand = Hand(GRAMMAR.tokens, share, burst, random.Random(1))
+    wrong = [hand.read("ok")[1] for _ in range(60_000)]
+    runs = sum(later and not now for now, later in pairwise(wrong))
+    assert sum(wrong) / len(wrong) == pytest.approx(share, rel=0.15)
+    assert sum(wrong) / runs == pytest.approx(burst, rel=0.25)
+
+
+def test_half_of_the_wrong_frames_are_unread():
+    hand = Hand(GRAMMAR.tokens, 0.5, 1.0, random.Random(2))
+    shown = [token for token, is_wrong in (hand.read("ok") for _ in range(8000)) if is_wrong]
+    assert shown.count(None) / len(shown) == pytest.approx(0.5, abs=0.04)
+
+
+def test_lost_signs_are_what_the_rule_is_for():
+    """With the rule off, bursts of misreadings lose digits; with it, none of the same sentences comes out wrong."""
+    found = {}
+    for rule in (RULES[0], RULES[-1]):
+        outcome = Outcome()
+        for turn in range(60):
+            rng = random.Random(turn)
+            sign("STOP HOVER 35 GO", rule, GRAMMAR, 0.06, 3.0, SETTINGS, rng, outcome)
+        found[rule.name] = outcome
+    assert found[RULES[-1].name].wrong > 0
+    assert found[RULES[0].name].wrong == 0
+
+
+def test_the_bound_grows_with_share_and_burst():
+    bounds = [
+        wrong_bound(share, burst, 6.0, SETTINGS)
+        for share, burst in ((0.01, 1.0), (0.01, 4.0), (0.1, 4.0), (0.1, 10.0))
+    ]
+    assert bounds == sorted(bounds)
+    assert bounds[0] == 0.0
+    # 6 words of 35.5 frames, a hundredth in bursts of four that last fifteen frames with probability 0.75 ** 14
+    assert bounds[1] == pytest.approx(6 * 35.5 * 0.01 / 4 * 0.75**14)
+    assert wrong_bound(0.9, 50.0, 60.0, replace(SETTINGS)) == 1.0
+
+
+def test_recorded_frames_make_the_words_where_they_say():
+    step = our_step(GRAMMAR)
+    frames = recorded()
+    types = [{event.type for event in step(shown, index)} for index, shown in enumerate(frames)]
+    assert [index for index, found in enumerate(types) if "word" in found] == [
+        index for index, shown in enumerate(frames) if shown.kind == ACCEPTING
+    ]
+    assert sum("instruction" in found for found in types) == 4
+
+
+def test_latency_tables_have_every_kind_of_frame():
+    latency, throughput = measure(len(recorded()), 400)
+    assert {row["frames"] for row in latency.rows} == {"idle", "collecting", "accepting", "all"}
+    assert throughput.rows[0]["frames"] == len(recorded())
+
+
+def test_a_library_runs_the_same_grammar():
+    pytest.importorskip("transitions")
+    step = transitions_step(GRAMMAR)
+    moves = [index for index, shown in enumerate(recorded()) if step(shown, index)]
+    assert moves == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    assert len(list(edges(GRAMMAR))) == sum(map(len, GRAMMAR.table.transitions))

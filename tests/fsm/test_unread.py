@@ -1,0 +1,213 @@
+"""A sign that was shown and not read must not leave a valid sentence that lacks it."""
+
+from itertools import product
+
+import pytest
+
+from lightgesture.fsm import Decoder, load_grammar
+from lightgesture.fsm.unread import UnreadSigning
+
+HOLD = 15
+SIGNED = "STOP HOVER 3 AND 5 GO"
+
+
+def sign(decoder, pairs, words, lost=(), how="unread", held=22, passage=9, rate=30.0):
+    """Sign `words`; those whose index is in `lost` are shown and not read, in one of several ways."""
+    events, frame = [], 0
+
+    def show(left, right, is_seen=True):
+        nonlocal frame
+        events.extend(
+            decoder.step(left, right, frame / rate, frame=frame, left_seen=is_seen, right_seen=is_seen)
+        )
+        frame += 1
+
+    for index, word in enumerate(words.split()):
+        left, right = pairs[word].split(",")
+        for _ in range(passage):
+            show(None, None)
+        for moment in range(held):
+            if index not in lost or how == "read":
+                show(left, right)
+            elif how == "unread":
+                show(None, None)
+            elif how == "one hand":
+                show(left, None)
+            elif how == "flicker":
+                show(*((left, right), (left, "4"), (None, right))[moment % 3])
+            elif how == "broken":
+                show(*((left, right) if moment % HOLD != HOLD // 2 else (None, right)))
+            elif how == "out of view":
+                show(None, None, is_seen=False)
+    return events
+
+
+@pytest.mark.parametrize("how", ["unread", "one hand", "flicker"])
+@pytest.mark.parametrize("lost", [(2,), (3,), (4,), (2, 3), (3, 4), (2, 3, 4)])
+def test_a_lost_sign_drops_the_sentence(grammar, words_to_pairs, pick, how, lost):
+    events = sign(Decoder(grammar), words_to_pairs, SIGNED, lost, how)
+    assert not pick(events, "instruction")
+    assert pick(events, "rejected", field="reason") == ["unread_sign"]
+
+
+def test_the_rejection_tells_where_the_sign_was(grammar, words_to_pairs, pick):
+    (rejected,) = pick(sign(Decoder(grammar), words_to_pairs, SIGNED, (2,)), "rejected")
+    assert rejected.text == "STOP HOVER"
+    assert rejected.detail == "a sign after STOP HOVER was not read; sign the sentence again"
+    assert rejected.frame == 2 * (9 + 22) + 18  # the nineteenth frame without a word, 1.2 holds allowing 18
+
+
+@pytest.mark.parametrize(("held", "passage"), list(product((15, 18, 22, 34), (2, 5, 9, 12, 15, 18))))
+def test_clean_signing_is_read_and_no_lost_sign_gives_another_instruction(
+    grammar, words_to_pairs, pick, held, passage
+):
+    """The limit, 18 frames, is not less than a passage and less than a hold and two passages."""
+    signed = sign(Decoder(grammar), words_to_pairs, SIGNED, how="read", held=held, passage=passage)
+    assert pick(signed, "instruction", field="text") == ["STOP HOVER 35 GO"]
+    for how, lost in product(("unread", "one hand", "flicker", "broken"), ((2,), (3, 4), (2, 3, 4))):
+        events = sign(Decoder(grammar), words_to_pairs, SIGNED, lost, how, held, passage)
+        assert {*pick(events, "instruction", field="text")} <= {"STOP HOVER 35 GO"}, how
+
+
+@pytest.mark.parametrize("rate", [10, 30, 60])
+def test_the_rule_holds_in_seconds_too(grammar, words_to_pairs, pick, rate):
+    def decode(lost, how):
+        decoder = Decoder(grammar, hold_seconds=0.5)
+        held, passage = round(0.8 * rate), round(0.3 * rate)
+        return sign(decoder, words_to_pairs, SIGNED, lost, how, held, passage, rate)
+
+    assert pick(decode((), "read"), "instruction", field="text") == ["STOP HOVER 35 GO"]
+    for lost in ((2,), (3, 4), (2, 3, 4)):
+        assert pick(decode(lost, "unread"), "rejected", field="reason") == ["unread_sign"]
+
+
+def test_hands_out_of_view_are_no_sign(grammar, words_to_pairs, pick):
+    events = sign(
+        Decoder(grammar), words_to_pairs, "STOP HOVER 3 GO", (2,), "out of view", held=60, passage=5
+    )
+    assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]
+
+
+def test_the_last_word_held_on_is_no_new_sign(grammar, words_to_pairs, pick):
+    events = sign(Decoder(grammar), words_to_pairs, "STOP HOVER GO", how="read", held=200)
+    assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]
+
+
+def test_unread_signing_outside_a_sentence_says_nothing(grammar, pick):
+    decoder = Decoder(grammar)
+    events = [
+        event for _ in range(200) for event in decoder.step(None, "5", 0.0, left_seen=True, right_seen=True)
+    ]
+    assert not pick(events, "rejected", "notice")
+
+
+def open_sentence(grammar, **options):
+    """A decoder inside "STOP HOVER" with a hold of four frames."""
+    decoder = Decoder(grammar, hold=4, **options)
+    for left, right in (("0", "0"), ("5", "5")):
+        for _ in range(4):
+            decoder.step(left, right, 0.0)
+    return decoder
+
+
+def frames_until_dropped(decoder, *frames):
+    """How many of the frames, repeated, the sentence survives."""
+    for count in range(1000):
+        decoder.step(*frames[count % len(frames)][:2], 0.0, **frames[count % len(frames)][2])
+        if decoder.state == "idle":
+            return count
+    return None
+
+
+@pytest.mark.parametrize(
+    ("frames", "expected"),
+    [
+        ([(None, None, {"left_seen": True, "right_seen": True})], 4),
+        ([(None, None, {"left_seen": True, "right_seen": False})], 4),
+        ([(None, None, {"right_seen": True})], 4),
+        ([(None, None, {"left_seen": False, "right_seen": False})], None),
+        ([(None, None, {})], None),  # nothing was told, and nothing is assumed
+        ([("5", None, {})], 4),  # a hand that has a token is in view
+        ([(None, "5", {})], 4),
+        ([("5", "5", {})], None),  # the last word
+        ([("ok", "3", {}), ("ok", "4", {})], 5),  # each may still become a word while it is shown
+        ([("ok", "3", {}), ("ok", "3", {}), ("ok", "3", {}), (None, "3", {})], 7),
+        ([("5", "5", {}), (None, "5", {})], 5),  # released at once, it is a sign that breaks off
+    ],
+)
+def test_what_counts_as_unread(grammar, frames, expected):
+    assert frames_until_dropped(open_sentence(grammar), *frames) == expected
+
+
+def test_a_word_begins_the_count_anew(grammar, pick):
+    decoder = open_sentence(grammar)
+    for left, right in (("ok", "1"), ("ok", "2"), ("ok", "ok")):
+        for _ in range(4):
+            decoder.step(None, None, 0.0, left_seen=True)
+        events = [event for _ in range(4) for event in decoder.step(left, right, 0.0)]
+    assert pick(events, "instruction", field="text") == ["STOP HOVER 12 GO"]
+
+
+def test_a_pair_that_is_no_word_was_told_and_does_not_count(grammar, pick):
+    decoder = open_sentence(grammar)
+    events = [event for _ in range(4) for event in decoder.step("3", "left", 0.0)]
+    events += [event for _ in range(4) for event in decoder.step(None, None, 0.0, left_seen=True)]
+    assert pick(events, "notice", field="reason") == ["unknown_pair"]
+    assert decoder.sentence == "STOP HOVER"
+    assert pick(decoder.step(None, None, 0.0, left_seen=True), "rejected", field="reason") == ["unread_sign"]
+
+
+def test_a_sign_half_held_when_the_sentence_drops_does_not_open_the_next(grammar, pick):
+    """ok,0 is a digit inside a sentence and STOP outside."""
+    decoder = Decoder(grammar, hold=4)
+    for left, right in (("0", "0"), ("5", "5")):
+        for _ in range(4):
+            decoder.step(left, right, 0.0)
+    for left in ("ok", "ok", "ok", "5", "5", "ok"):  # the last frame breaks the limit as the sign begins
+        events = decoder.step(left, "0", 0.0)
+    assert pick(events, "rejected", field="reason") == ["unread_sign"]
+    assert not pick([event for _ in range(20) for event in decoder.step("ok", "0", 0.0)], "word")
+
+
+def test_the_limit_is_a_setting_of_the_grammar(write_grammar):
+    lenient = load_grammar(write_grammar(("unread = 1.2", "unread = 2.5")))
+    assert frames_until_dropped(open_sentence(lenient), (None, None, {"left_seen": True})) == 10
+
+
+class TestUnreadSigning:
+    """The sum by itself. A letter is a pair, a dot hands without one, a comma a frame out of view."""
+
+    @pytest.mark.parametrize(
+        ("frames", "expected"),
+        [
+            ("......", 5),
+            ("..,..,.,.", 8),
+            ("aaaaaaaaaa", None),  # it may still become a word
+            ("aaaaaaaa...", 9),  # gone for two frames it was a sign
+            ("aaaa.aaaa.aaaa", None),  # flicker: only the frames between count
+            ("aaaa.aaaa.aaaa..", 15),
+            ("aaaabaaaabaaaa", None),
+            ("aaaabb.", 6),  # another sign: one frame until it was sure
+            ("aaaabbbbbbb", None),
+            ("aaabbbccc", 7),
+            (".....aaaaaaaaaaaa", None),
+            (".....aa.", 7),
+        ],
+    )
+    def test_when_a_sign_was_missed(self, frames, expected):
+        signing = UnreadSigning(5, 2)
+        missed = [
+            index
+            for index, shown in enumerate(frames)
+            if shown != "," and signing.process(None if shown == "." else (shown, shown), 1.0)
+        ]
+        assert (missed[0] if missed else None) == expected
+
+    def test_a_word_takes_all_away_and_what_was_told_only_itself(self):
+        signing = UnreadSigning(5, 2)
+        for take_away, left in ((signing.reset, 6), (signing.pass_over, 3)):
+            signing.reset()
+            for pair in (None, None, None, ("a", "a"), ("a", "a"), ("a", "a")):
+                assert not signing.process(pair, 1.0)
+            take_away()
+            assert [signing.process(None, 1.0) for _ in range(left)] == [False] * (left - 1) + [True]

@@ -62,7 +62,9 @@ def _decode_one(task: Task, settings: DecodeSettings) -> None:
     debug = make_debug_pictures(settings, task.stem)
     pipeline = open_pipeline(settings, task.name, debug)
     with ExitStack() as stack:
-        source = stack.enter_context(open_source(task.path, settings.fps))
+        source = stack.enter_context(
+            open_source(task.path, settings.fps, size=settings.width_height, topic=settings.topic)
+        )
         progress = stack.enter_context(Progress(task.name, source.frame_count, "frame", settings.quiet))
         printer = JsonPrinter if settings.as_json else TextPrinter
         writers: list[Writer] = [printer(progress.print_line, task.name)]

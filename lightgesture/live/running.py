@@ -80,9 +80,9 @@ def _make_printer(settings: DecodeSettings, name: str) -> Sink:
 
 
 def _make_clock() -> Callable[[], float]:
-    """Seconds since now."""
+    """Seconds since now, to the microsecond."""
     start_s = time.monotonic()
-    return lambda: time.monotonic() - start_s
+    return lambda: round(time.monotonic() - start_s, 6)
 
 
 def _make_report() -> Report:

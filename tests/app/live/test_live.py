@@ -1,0 +1,186 @@
+"""The command: streams that come and go, signals, results."""
+
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.benchmarks.mjpeg_server import MjpegServer
+from lightgesture.errors import ExitStatus
+
+FILES = [cv2.imencode(".jpg", np.full((48, 64, 3), 20 * n, np.uint8))[1].tobytes() for n in range(8)]
+
+
+def free_port():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        return server.getsockname()[1]
+
+
+@contextlib.contextmanager
+def live(*arguments, stdin=subprocess.DEVNULL):
+    """A run of the command in a process of its own; it ends with the block."""
+    command = [sys.executable, "-m", "lightgesture", "live", *map(str, arguments)]
+    child = subprocess.Popen(
+        command, stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8"
+    )
+    try:
+        yield child
+    finally:
+        child.kill()
+        child.wait()
+        child.stdout.close()
+        child.stderr.close()
+
+
+def records_until(child, condition):
+    """Records of standard output up to the first that meets the condition."""
+    found = []
+    for line in child.stdout:
+        found.append(json.loads(line))
+        if condition(found[-1]):
+            return found
+    raise AssertionError(f"ended after {found} with {child.stderr.read()}")
+
+
+def run_on_standard_input(run, monkeypatch, content, *arguments):
+    read, write = os.pipe()
+    threading.Thread(target=lambda: (os.write(write, content), os.close(write)), daemon=True).start()
+    with os.fdopen(read) as stream:
+        monkeypatch.setattr(sys, "stdin", stream)
+        return run("live", "-", *arguments)
+
+
+def test_standard_input_to_its_end(run, fake, monkeypatch):
+    result = run_on_standard_input(run, monkeypatch, FILES[0], "--json", "--frames")
+    assert result.status == ExitStatus.OK
+    assert [json.loads(line)["type"] for line in result.out] == ["frame", "summary"]
+    assert result.err == ["lightgesture: -: 1 pictures decoded, 0 passed over for newer ones"]
+
+
+def test_plain_words_and_quiet(run, fake, monkeypatch):
+    result = run_on_standard_input(run, monkeypatch, bytes(range(256)) * 27, "--size", "48x48", "--quiet")
+    assert result.status == ExitStatus.OK
+    assert result.out[0] == "-"
+    assert "1 frame in" in result.out[1]
+    assert result.err == []
+
+
+def test_standard_input_without_a_picture(run, fake, monkeypatch):
+    result = run_on_standard_input(run, monkeypatch, b"no picture", "--json", "--quiet")
+    assert result.status == ExitStatus.SOME_FAILED
+    assert len(result.err) == 1
+    assert result.err[0].startswith("lightgesture: standard input: held no whole JPEG picture")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (["no_such_thing"], "no_such_thing: is no stream; name a camera"),
+        (["-", "--size", "640"], "--size: String should match pattern"),
+        (["-", "--udp", "host"], "--udp host: is no HOST:PORT"),
+        (["-", "--mavlink", "nowhere"], "--mavlink nowhere: is no link"),
+        (["-", "--hook", "no-such-program"], "--hook no-such-program: no such command"),
+        (["-", "--mavlink-map", "a.toml"], "--mavlink-map: is of no use without --mavlink"),
+        (["-", "--model", "cnn"], "the cnn model is not built yet"),
+        (["v4l2src ! appsink"], "v4l2src ! appsink: this OpenCV has no GStreamer"),
+    ],
+)
+def test_wrong_usage_is_one_line(run, fake, monkeypatch, arguments, reason):
+    monkeypatch.setattr(cv2.videoio_registry, "getStreamBackends", list)
+    result = run("live", *arguments)
+    assert result.status == ExitStatus.USAGE
+    assert result.out == []
+    assert len(result.err) == 1
+    assert result.err[0].startswith(f"lightgesture: {reason}")
+
+
+@pytest.mark.parametrize(
+    ("number", "status"), [(signal.SIGTERM, ExitStatus.OK), (signal.SIGINT, ExitStatus.INTERRUPTED)]
+)
+def test_signals_end_it_with_the_summary_last(number, status):
+    with MjpegServer(FILES, fps=50) as server, live(server.address, "--json") as child:
+        beats = records_until(child, lambda record: record["type"] == "heartbeat" and record["frames"] > 3)
+        assert list(beats[-1]) == ["type", "source", "time_s", "frames", "dropped", "ms_per_frame", "state"]
+        assert beats[-1]["source"] == server.address
+        child.send_signal(number)
+        rest = [json.loads(line) for line in child.stdout]
+        assert child.wait(5) == status
+        assert rest[-1]["type"] == "summary"
+        assert rest[-1]["status"] == "ok"
+        assert child.stderr.read().count("\n") == 1
+
+
+def test_a_server_that_goes_and_comes_back():
+    port = free_port()
+    with live(f"http://127.0.0.1:{port}/", "--json") as child:
+        records_until(child, lambda record: record["type"] == "heartbeat" and record["frames"] == 0)
+        seen = 0
+        for _ in range(2):
+            with MjpegServer(FILES, fps=50, port=port):
+                beats = records_until(child, lambda record: record.get("frames", 0) > seen + 5)  # noqa: B023
+            seen = beats[-1]["frames"]
+        child.send_signal(signal.SIGTERM)
+        assert child.wait(5) == ExitStatus.OK
+        said = child.stderr.read().splitlines()
+    assert "cannot be opened (Connection refused); trying again until it works" in said[0]
+    assert sum("pictures again" in line for line in said) == 2
+
+
+def test_sinks_at_once_and_one_that_fails(tmp_path):
+    """The bundled clip, to standard output, UDP, a MAVLink peer that is not there, and a hook."""
+    from lightgesture.benchmarks.mjpeg_server import read_jpegs
+    from lightgesture.decoding import SAMPLE
+
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as receiver:
+        receiver.bind(("127.0.0.1", 0))
+        receiver.settimeout(5)
+        datagrams = []
+        hook = f"{sys.executable} -c 'import sys; open(sys.argv[1], \"a\").write(sys.stdin.read())' {tmp_path / 'h'}"
+        sinks = [
+            "--udp",
+            f"127.0.0.1:{receiver.getsockname()[1]}",
+            "--mavlink",
+            f"tcp:127.0.0.1:{free_port()}",
+        ]
+        pictures = read_jpegs(str(SAMPLE))
+        with (
+            MjpegServer(pictures, fps=30) as server,
+            live(server.address, "--json", *sinks, "--hook", hook) as child,
+        ):
+            printed = records_until(child, lambda record: record["type"] == "instruction")
+            while not datagrams or datagrams[-1]["type"] != "instruction":
+                datagrams.append(json.loads(receiver.recv(65536)))
+            time.sleep(0.3)
+            child.send_signal(signal.SIGTERM)
+            child.stdout.read()
+            assert child.wait(8) == ExitStatus.OK
+            said = child.stderr.read()
+    assert printed[-1]["text"] == datagrams[-1]["text"] == "STOP HOVER 50 GO"
+    assert [json.loads(line)["text"] for line in (tmp_path / "h").read_text().splitlines()] == [
+        "STOP HOVER 50 GO"
+    ]
+    assert said.count("cannot be opened (Connection refused); trying again until it works") == 1
+
+
+def test_a_reader_of_the_results_who_leaves():
+    with MjpegServer(FILES, fps=50) as server, live(server.address, "--json", "--frames") as child:
+        child.stdout.readline()
+        child.stdout.close()
+        assert child.wait(5) == ExitStatus.SOME_FAILED
+
+
+def test_options_of_the_command_may_stand_in_a_file(tmp_path, run, fake, monkeypatch):
+    config = tmp_path / "live.toml"
+    config.write_text('udp = ["127.0.0.1:9"]\nhook = ["true"]\nsize = "16x16"\njson = true\nquiet = true\n')
+    result = run_on_standard_input(run, monkeypatch, bytes(768), "--config", config)
+    assert (result.status, result.err) == (ExitStatus.OK, [])
+    assert fake.made[0].seen[0][2] == (16, 16, 3)

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
-from lightgesture.console import print_line, say
+from lightgesture.console import say
 from lightgesture.errors import ExitStatus
 from lightgesture.live.listener import Listener
 from lightgesture.live.loop import LiveLoop
@@ -17,7 +17,7 @@ from lightgesture.opening import make_debug_pictures, open_pipeline
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.settings import DecodeSettings
 from lightgesture.sinks import Outbox, Sink, make_sinks
-from lightgesture.sinks.printer import PrinterSink
+from lightgesture.sinks.printer import PrinterSink, print_unbuffered
 from lightgesture.sources import LiveSource, SourceOptions, live_source
 
 DEBUG_STEM = "live"
@@ -76,7 +76,7 @@ def _status(loop: LiveLoop, outboxes: Sequence[Outbox], stopping: Stopping) -> E
 
 
 def _make_printer(settings: DecodeSettings, name: str) -> Sink:
-    return PrinterSink((JsonPrinter if settings.as_json else TextPrinter)(print_line, name))
+    return PrinterSink((JsonPrinter if settings.as_json else TextPrinter)(print_unbuffered, name))
 
 
 def _make_clock() -> Callable[[], float]:

@@ -5,6 +5,7 @@ import shlex
 import shutil
 import signal
 import subprocess
+import sys
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -50,7 +51,11 @@ class HookSink:
         try:
             # A group of its own, so that what the command has started can be ended with it.
             with subprocess.Popen(
-                self._words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, start_new_session=True
+                self._words,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=_standard_error(),
+                start_new_session=True,
             ) as process:
                 _talk(process, line, timeout_s)
         except subprocess.TimeoutExpired:
@@ -62,6 +67,14 @@ class HookSink:
 
     def close(self) -> None:
         """Nothing stays open between commands."""
+
+
+def _standard_error() -> int | None:
+    """Ours, which need not be descriptor 2: that one is muted while native libraries run."""
+    try:
+        return sys.stderr.fileno()
+    except (OSError, ValueError, AttributeError):
+        return None
 
 
 def _talk(process: "subprocess.Popen[bytes]", line: bytes, timeout_s: float) -> None:

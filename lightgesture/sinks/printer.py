@@ -1,6 +1,9 @@
 """Records on standard output, as JSON Lines or in plain words."""
 
-from lightgesture.console import ReaderGoneError
+import os
+import sys
+
+from lightgesture.console import ReaderGoneError, print_line
 from lightgesture.errors import UsageError
 from lightgesture.records import Record
 from lightgesture.results import Writer
@@ -33,3 +36,25 @@ class PrinterSink:
 
     def close(self) -> None:
         """Standard output is not ours to close."""
+
+
+def print_unbuffered(text: str) -> None:
+    """One line on standard output, past its buffer, whose lock a blocked thread would hold while the program ends.
+
+    UsageError, ReaderGoneError: as of `print_line`.
+    """
+    try:
+        descriptor = sys.stdout.fileno()
+    except (OSError, ValueError):  # something else stands in its place
+        print_line(text)
+        return
+    content = (text + "\n").encode(sys.stdout.encoding or "utf-8", "backslashreplace")
+    try:
+        while content:
+            content = content[os.write(descriptor, content) :]
+    except BrokenPipeError as error:
+        raise ReaderGoneError from error
+    except OSError as error:
+        raise UsageError(
+            f"standard output: cannot be written ({error.strerror}); send it elsewhere"
+        ) from error

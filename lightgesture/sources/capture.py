@@ -115,6 +115,6 @@ def hide_login(address: str) -> str:
 
 def _timeouts(settings: StreamSettings) -> list[int]:
     return [
-        *(cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, round(settings.open_timeout_s * 1e3)),
-        *(cv2.CAP_PROP_READ_TIMEOUT_MSEC, round(settings.read_timeout_s * 1e3)),
+        *(cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, round(settings.timeout_s * 1e3)),
+        *(cv2.CAP_PROP_READ_TIMEOUT_MSEC, round(settings.timeout_s * 1e3)),
     ]

@@ -32,7 +32,7 @@ class HttpStream:
 
     def __enter__(self) -> Self:
         try:
-            self._answer = self._opener.open(self._request, timeout=self._settings.open_timeout_s)
+            self._answer = self._opener.open(self._request, timeout=self._settings.timeout_s)
         except urllib.error.HTTPError as error:
             raise InputError(f"{self.name}: the server answers {error.code} {error.reason}") from None
         except (OSError, http.client.HTTPException) as error:

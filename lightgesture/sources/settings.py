@@ -24,14 +24,13 @@ class SourceOptions:
 class StreamSettings:
     """Limits of streams.
 
-    open_timeout_s: seconds until a peer must have answered, above 0. read_timeout_s: seconds without data after which
-    a stream counts as broken off; shorter notices sooner, longer forgives a weak link. no_picture_s: seconds in which
-    data came and no whole picture. max_picture_bytes: longest JPEG file; a longer one is no picture. max_pixels: most
-    pixels of a picture, against files that promise more than fits the memory. chunk_bytes: read at once.
+    timeout_s: seconds until a peer must have answered, and without data after which a stream counts as broken off,
+    above 0; shorter notices sooner, longer forgives a weak link. no_picture_s: seconds in which data came and no whole
+    picture. max_picture_bytes: longest JPEG file; a longer one is no picture. max_pixels: most pixels of a picture,
+    against files that promise more than fits the memory. chunk_bytes: read at once.
     """
 
-    open_timeout_s: float = 5.0
-    read_timeout_s: float = 5.0
+    timeout_s: float = 5.0
     no_picture_s: float = 10.0
     max_picture_bytes: int = 16 << 20
     max_pixels: int = 40_000_000

@@ -1,9 +1,10 @@
 """Pictures from standard input: JPEG files one after the other, or raw BGR of a given size."""
 
+import io
 import sys
 from collections.abc import Iterator
 from types import TracebackType
-from typing import BinaryIO, Self
+from typing import IO, Self
 
 import numpy as np
 
@@ -26,12 +27,12 @@ class StandardInputStream:
     """
 
     def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: BinaryIO | None = None
+        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
     ) -> None:
         self.name = STANDARD_INPUT
         self.is_reopened = False
         self._size, self._settings = options.size, settings
-        self._stream = stream or sys.stdin.buffer
+        self._stream = stream or _open_raw()
 
     def __enter__(self) -> Self:
         return self
@@ -53,9 +54,7 @@ class StandardInputStream:
             )
 
     def _chunks(self) -> Iterator[bytes]:
-        # One read of what is there: a full block would keep a small picture waiting for the next one.
-        read = getattr(self._stream, "read1", self._stream.read)
-        while chunk := read(self._settings.chunk_bytes):
+        while chunk := self._stream.read(self._settings.chunk_bytes):
             yield chunk
 
     def _jpegs(self) -> Iterator[bytes]:
@@ -73,11 +72,23 @@ class StandardInputStream:
                 del buffer[:length]
 
 
+def _open_raw() -> IO[bytes]:
+    """Standard input without a buffer.
+
+    It gives what is there: a full block would keep a small picture waiting for the next one. And it has no lock, which
+    a thread that waits for a picture would hold while the program ends; Python then aborts.
+    """
+    try:
+        return io.FileIO(sys.stdin.fileno(), closefd=False)
+    except (OSError, ValueError):  # something else stands in its place
+        return sys.stdin.buffer
+
+
 class StandardInput:
     """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
 
     def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: BinaryIO | None = None
+        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
     ) -> None:
         self.name = STANDARD_INPUT
         self.frame_count: int | None = None

@@ -41,8 +41,8 @@ def live(*arguments, stdin=subprocess.DEVNULL):
         watchdog.cancel()
         child.kill()
         child.wait()
-        child.stdout.close()
-        child.stderr.close()
+        for stream in filter(None, (child.stdin, child.stdout, child.stderr)):
+            stream.close()
 
 
 def records_until(child, condition):
@@ -200,6 +200,38 @@ def test_an_instruction_over_the_network_and_by_mavlink():
     texts = [message.text for message in messages if message.get_type() == "STATUSTEXT"]
     assert texts == ["Diver: STOP HOVER 50 GO"]
     assert sum(message.get_type() == "HEARTBEAT" for message in messages) > 5
+
+
+def test_a_silent_standard_input_does_not_keep_it_from_ending():
+    """A thread that waits for a picture must hold nothing that the end of the program needs."""
+    with live("-", "--json", stdin=subprocess.PIPE) as child:
+        records_until(child, lambda record: record["type"] == "heartbeat")
+        child.send_signal(signal.SIGTERM)
+        assert [json.loads(line)["type"] for line in child.stdout][-1] == "summary"
+        assert child.wait(20) == ExitStatus.OK
+        assert child.stderr.read().count("\n") == 1
+
+
+def test_a_reader_who_reads_nothing_does_not_keep_it_from_ending():
+    read, write = os.pipe()
+    os.set_blocking(write, False)
+    with contextlib.suppress(BlockingIOError):
+        while True:
+            os.write(write, b"x" * 4096)
+    os.set_blocking(write, True)
+    asked = threading.Event()
+    with MjpegServer(FILES, fps=50, note=lambda number: asked.set()) as server:
+        command = [sys.executable, "-m", "lightgesture", "live", server.address, "--json", "--frames"]
+        child = subprocess.Popen(command, stdout=write, stderr=subprocess.PIPE, encoding="utf-8")
+        assert asked.wait(30)
+        time.sleep(0.5)
+        child.send_signal(signal.SIGTERM)
+        said = child.communicate(timeout=40)[1]
+    os.close(read)
+    os.close(write)
+    assert child.returncode == ExitStatus.OK
+    assert "records were dropped" in said
+    assert "Fatal" not in said
 
 
 def test_a_reader_of_the_results_who_leaves():

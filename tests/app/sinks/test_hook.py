@@ -1,6 +1,7 @@
 """Commands run for instructions."""
 
 import json
+import subprocess
 import sys
 import time
 
@@ -63,3 +64,17 @@ def test_a_command_that_vanishes(tmp_path, instruction):
 def test_no_command(command):
     with pytest.raises(UsageError, match=r"^--hook"):
         HookSink(command)
+
+
+def test_its_standard_error_is_ours_while_native_messages_are_muted(tmp_path):
+    code = (
+        "import sys; from types import SimpleNamespace\n"
+        "from lightgesture.console import native_messages_muted; from lightgesture.sinks.hook import HookSink\n"
+        "hook = HookSink(sys.argv[1]); record = SimpleNamespace(to_dict=dict)\n"
+        "with native_messages_muted(): hook.send(record)"
+    )
+    script = "sh -c 'echo out; echo complaint >&2'"
+    done = subprocess.run(
+        [sys.executable, "-c", code, script], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert (done.stdout, done.stderr) == ("", "complaint\n")

@@ -114,7 +114,7 @@ def test_ffmpeg_reads_a_stream_and_tells_its_end():
 def test_ffmpeg_gives_up_on_a_silent_peer():
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"rtsp://user:secret@127.0.0.1:{server.getsockname()[1]}/cam"
-        stream = open_network(address, StreamSettings(open_timeout_s=0.3))
+        stream = open_network(address, StreamSettings(timeout_s=0.3))
         with pytest.raises(InputError, match=r"^rtsp://127.0.0.1:\d+/cam: cannot be opened"), stream:
             pass
 

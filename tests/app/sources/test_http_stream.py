@@ -92,7 +92,7 @@ def test_chunked_answers(answering):
 )
 def test_what_may_go_wrong(answering, answer, options, reason):
     address, _ = answering(answer, **options)
-    stream = HttpStream(f"http://{address}", StreamSettings(open_timeout_s=0.4, no_picture_s=0.2))
+    stream = HttpStream(f"http://{address}", StreamSettings(timeout_s=0.4, no_picture_s=0.2))
     with pytest.raises(InputError, match=f"^http://{address.replace('?', '[?]')}: {reason}"), stream:
         list(stream)
 

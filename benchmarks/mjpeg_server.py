@@ -60,7 +60,7 @@ class MjpegServer:
             def do_GET(self) -> None:
                 serve(self)
 
-            def log_message(self, *_arguments: object) -> None:
+            def log_message(self, format: str, *args: object) -> None:  # noqa: A002
                 """Standard error is for messages to the user."""
 
         return Handler

@@ -64,6 +64,9 @@ class LiveLoop:
         """Decode until `stopping` is set, the stream ends for good, or nobody takes the records any more."""
         beat_s = self._clock() + self._settings.heartbeat_s
         while not stopping.is_set() and not self._is_unheard():
+            # The thread that reads and those that send come first, so that the next picture is the newest there is and
+            # the last record is out: on one core they would else wait until this thread's turn is over.
+            time.sleep(self._settings.breath_s)
             wait_s = min(self._settings.poll_s, max(0.0, beat_s - self._clock()))
             snapshot = self._mailbox.take(wait_s)
             if snapshot is not None:

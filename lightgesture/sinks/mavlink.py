@@ -168,8 +168,9 @@ def _import_pymavlink() -> tuple[Any, Any]:
             f"--mavlink: pymavlink is not installed ({error}); install lightgesture[mavlink]"
         ) from None
     # It prints its troubles on standard output, which belongs to the records.
-    vars(mavutil)["print"] = _print_nothing
-    return mavutil, common
+    module: Any = mavutil
+    module.print = _print_nothing
+    return module, common
 
 
 def _print_nothing(*_words: object, **_options: object) -> None:

@@ -156,6 +156,7 @@ def table(run: Run, settings: LiveLatencySettings) -> Table:
         "age within two frame times and processing, % of frames": 100.0 * within / len(run.pairs_ms),
         "age beyond processing, median ms": percentile([age - spent for age, spent in run.pairs_ms], 50),
         "memory at the start, MiB": run.memory_mib[0],
+        "memory at half time, MiB": run.memory_mib[len(run.memory_mib) // 2],
         "memory at the end, MiB": run.memory_mib[-1],
     }
     rows = tuple({"what": what, "value": value} for what, value in values.items())

@@ -27,7 +27,7 @@ from lightgesture.threads import OneBlasThread
 STAGES = ("colour", "regions", "tracks", "classify", "decode")
 
 
-KEPT_TIMES = 10_000
+KEPT_TIMES = 2_000
 """Frames whose times make the summary's medians, the last ones: a camera that runs for days needs no more memory."""
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from lightgesture import Pipeline
 from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.pipeline import KEPT_TIMES, StageClock
 from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, SummaryRecord
 
@@ -230,3 +231,13 @@ class FakeRegions:
 
         region = HandRegion((60, 40, 30, 40), np.zeros((0, 2), np.int32), None, 0.9)
         return Candidates((region,), np.zeros((1, 1), np.float32), colour.source_size)
+
+
+def test_times_of_a_long_stream_take_no_more_memory():
+    clock = StageClock()
+    for _ in range(KEPT_TIMES + 500):
+        with clock.stage("colour"):
+            pass
+        clock.end_frame()
+    assert len(clock._frames) == len(clock._stages["colour"]) == KEPT_TIMES
+    assert set(clock.per_stage()) == {"colour"}

@@ -16,15 +16,24 @@ if TYPE_CHECKING:
     from rosbags.interfaces import Connection
 
 _SUFFIXES = (".bag", ".mcap", ".db3")
-_METADATA = "metadata.yaml"
+_METADATA, _METADATA_KEY, _METADATA_BYTES = "metadata.yaml", b"rosbag2_bagfile_information", 4096
 _NANOSECONDS = 1_000_000_000
 
 
 def is_bag(path: str) -> bool:
     """Whether the name is that of a bag: a file's by its ending, a folder's by the metadata in it."""
     if os.path.isdir(path):
-        return os.path.isfile(os.path.join(path, _METADATA))
+        return _is_metadata(os.path.join(path, _METADATA))
     return os.path.isfile(path) and path.lower().endswith(_SUFFIXES)
+
+
+def _is_metadata(path: str) -> bool:
+    """Whether it is the metadata of a bag; other programs have files of that name too."""
+    try:
+        with open(path, "rb") as stream:
+            return _METADATA_KEY in stream.read(_METADATA_BYTES)
+    except OSError:
+        return False
 
 
 class BagFile:

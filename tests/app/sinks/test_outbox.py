@@ -150,7 +150,13 @@ def test_the_end_does_not_wait_for_a_sink_that_is_down(heartbeat):
 def test_the_end_does_not_wait_for_a_sink_that_blocks(heartbeat):
     sink = FakeSink()
     sink.may_send.clear()
-    messages = run(sink, [heartbeat(1), heartbeat(2)], OutboxSettings(drain_s=0.05))
+    messages = []
+    outbox = Outbox(sink, messages.append, OutboxSettings(drain_s=0.05))
+    outbox.start()
+    outbox.put(heartbeat(1))
+    wait_for(lambda: not outbox._queue)  # the first is being sent
+    outbox.put(heartbeat(2))
+    outbox.stop()
     sink.may_send.set()
     assert messages == ["fake: 1 records were dropped"]
 

@@ -132,6 +132,13 @@ def test_damaged_bags(make_bag, kind):
             list(open_source(path))
 
 
+def test_a_folder_of_frames_with_metadata_of_its_own_is_no_bag(make_folder):
+    folder = make_folder(count=2)
+    (folder / "metadata.yaml").write_text("camera: left\n")
+    with open_source(folder) as source:
+        assert len(list(source)) == 2
+
+
 def test_decode_takes_a_bag(make_bag, run, fake):
     result = run("decode", make_bag("ros1", left=raw, right=raw), "--topic", "/right", "--json")
     assert result.status == ExitStatus.OK

@@ -14,7 +14,7 @@ from lightgesture.features.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
 from lightgesture.pipeline import Pipeline
-from lightgesture.records import FrameRecord, SummaryRecord
+from lightgesture.records import FrameRecord
 
 Image = NDArray[np.uint8]
 
@@ -112,14 +112,14 @@ class _PipelineStream:
         for record in self._pipeline.process(image, time_s, self._index):
             if isinstance(record, FrameRecord):
                 readings = _readings(record)
-            elif not isinstance(record, SummaryRecord):
+            elif isinstance(record, Event):
                 self._events.append(record)
         self._index += 1
         return readings
 
     def finish(self) -> Decoded:
         for record in self._pipeline.finish():
-            if not isinstance(record, FrameRecord | SummaryRecord):
+            if isinstance(record, Event):
                 self._events.append(record)
         return decoded(self._events)
 

@@ -16,7 +16,8 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.interruption import terminated_as_interrupted
 
 COMMANDS = {
-    "decode": "videos and folders of frames to instructions",
+    "decode": "videos, folders of frames and bags to instructions",
+    "live": "a camera or a stream to instructions, as they are signed",
     "recognize": "single pictures to hands and their tokens",
     "train": "build a model from labelled pictures",
     "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",

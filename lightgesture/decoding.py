@@ -86,10 +86,13 @@ def _tasks(inputs: Sequence[str], quiet: bool) -> list[Task]:
 def _execute(tasks: Sequence[Task], settings: DecodeSettings, hear: Hear) -> None:
     """Here, in worker processes, or on a cluster."""
     encoding = sys.stdout.encoding or "utf-8"
-    jobs = min(settings.jobs or usable_cores(), len(tasks))
+    is_piped = any(task.is_standard_input for task in tasks)
+    jobs = 1 if is_piped else min(settings.jobs or usable_cores(), len(tasks))
     if not tasks:
         return
     if settings.cluster:
+        if is_piped:
+            raise UsageError("-: standard input reaches no other machine; leave out --cluster")
         from lightgesture.archive.cluster import run_on_cluster
 
         run_on_cluster(tasks, settings, encoding, settings.cluster, hear)

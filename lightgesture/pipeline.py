@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import copy
@@ -29,12 +29,16 @@ from lightgesture.threads import OneBlasThread
 STAGES = ("colour", "regions", "tracks", "classify", "decode")
 
 
+KEPT_TIMES = 2_000
+"""Frames whose times make the summary's medians, the last ones: a camera that runs for days needs no more memory."""
+
+
 class StageClock:
     """Milliseconds of each stage and of each frame, kept for the summary."""
 
     def __init__(self) -> None:
-        self._stages: dict[str, list[float]] = defaultdict(list)
-        self._frames: list[float] = []
+        self._stages: dict[str, deque[float]] = defaultdict(lambda: deque(maxlen=KEPT_TIMES))
+        self._frames: deque[float] = deque(maxlen=KEPT_TIMES)
         self._current = 0.0
 
     @contextmanager

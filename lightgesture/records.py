@@ -68,4 +68,25 @@ class SummaryRecord:
         return asdict(self)
 
 
-Record = FrameRecord | SummaryRecord | Event
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeartbeatRecord:
+    """A sign of life of a live stream, each second, whether pictures come or not.
+
+    time_s: seconds since the start. frames: processed so far. dropped: passed over so far, because a newer one came
+    while one was processed. ms_per_frame: median milliseconds of a picture, decoding it included, since the last
+    heartbeat; 0 where none came. state: "idle" or "collecting", the decoder's.
+    """
+
+    type: str = field(default="heartbeat", init=False)
+    source: str | None
+    time_s: float
+    frames: int
+    dropped: int
+    ms_per_frame: float
+    state: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+Record = FrameRecord | SummaryRecord | HeartbeatRecord | Event

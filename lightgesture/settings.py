@@ -118,13 +118,49 @@ class DecodeSettings(BaseModel):
         only=(DECODE,),
         min_length=1,
     )
+    size: str | None = _option(
+        None,
+        "width and height in pixels: of raw BGR pictures on standard input; asked of a camera",
+        "WxH",
+        only=STREAMS,
+        pattern=r"^[1-9][0-9]{0,4}x[1-9][0-9]{0,4}$",
+    )
+    topic: str | None = _option(
+        None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE,), min_length=1
+    )
+    udp: list[str] = _option(
+        [], "send the records as JSON datagrams too (repeatable)", "HOST:PORT", only=(LIVE,)
+    )
+    mavlink: list[str] = _option(
+        [],
+        "send heartbeats and instructions by MAVLink, as to udpout:127.0.0.1:14550 (repeatable)",
+        "LINK",
+        only=(LIVE,),
+    )
+    mavlink_map: str | None = _option(
+        None, "values and commands that instructions send by MAVLink (default: none)", "FILE", only=(LIVE,)
+    )
+    hook: list[str] = _option(
+        [],
+        "run a command for each instruction, its record as JSON on standard input (repeatable)",
+        "COMMAND",
+        only=(LIVE,),
+    )
     debug_dir: str | None = _option(
         None, "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png", "DIR", min_length=1
     )
     quiet: bool = _option(False, "no progress and no remarks on standard error")
 
+    @property
+    def width_height(self) -> tuple[int, int] | None:
+        """`size` as numbers, pixels."""
+        if self.size is None:
+            return None
+        width, _, height = self.size.partition("x")
+        return int(width), int(height)
 
-_PATHS = ("grammar", "profile", "out", "debug_dir", "model")
+
+_PATHS = ("grammar", "profile", "out", "debug_dir", "model", "mavlink_map")
 _HOLDS = ("hold", "hold_seconds")
 _BUILT_IN_MODELS = ("svm", "cnn")
 
@@ -139,6 +175,8 @@ def add_options(parser: argparse.ArgumentParser, command: str) -> None:
         kind: dict[str, Any] = {"metavar": extra["metavar"]}
         if field.annotation is bool:
             kind = {"action": argparse.BooleanOptionalAction}
+        elif field.annotation == list[str]:
+            kind["action"] = "append"
         parser.add_argument(
             _flag(key), dest=key, default=argparse.SUPPRESS, help=_help(field, extra["metavar"]), **kind
         )
@@ -207,7 +245,7 @@ def _flag(key: str) -> str:
 
 def _help(field: FieldInfo, metavar: str | None) -> str:
     text = (field.description or "").replace("%", "%%")
-    is_told = metavar is None or field.default is None or "(default" in text
+    is_told = metavar is None or field.default in (None, []) or "(default" in text
     return text if is_told else f"{text} (default: {field.default})"
 
 

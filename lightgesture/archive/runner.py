@@ -88,7 +88,7 @@ class _Work:
     def run(self) -> Outcome:
         """InputError: no frame could be decoded."""
         with ExitStack() as stack:
-            source = stack.enter_context(self._task.open(self._settings.fps))
+            source = stack.enter_context(self._task.open(self._settings))
             self._hear(Opened(self._task.place, source.frame_count))
             self._open_files(stack)
             failure = self._process(source)

@@ -6,8 +6,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from lightgesture.results.stems import output_stems
+from lightgesture.settings import DecodeSettings
 from lightgesture.sources import Source, is_picture_name, natural_key, open_source
 from lightgesture.sources.folder import FrameFolder
+from lightgesture.sources.standard_input import STANDARD_INPUT
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +26,18 @@ class Task:
     stem: str
     pictures: tuple[str, ...] = ()
 
-    def open(self, fps: float) -> Source:
-        """The open source of its frames; fps: of folders of frames. InputError: one line."""
+    @property
+    def is_standard_input(self) -> bool:
+        """Whether its frames come through this process alone."""
+        return self.path == STANDARD_INPUT and not os.path.lexists(self.path)
+
+    def open(self, settings: DecodeSettings) -> Source:
+        """The open source of its frames. InputError: one line."""
         if self.pictures:
-            return FrameFolder(self.path, fps, self.pictures)
-        return open_source(self.path, fps)
+            return FrameFolder(self.path, settings.fps, self.pictures)
+        return open_source(
+            self.path, settings.fps, size=settings.width_height, topic=settings.topic
+        )
 
     def absolute(self) -> "Task":
         """The same for a process that runs in another folder."""

@@ -1,4 +1,4 @@
-"""`lightgesture decode`: videos and folders of frames to instructions."""
+"""`lightgesture decode`: videos, folders of frames and bags to instructions."""
 
 import argparse
 
@@ -11,7 +11,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "inputs",
         nargs="*",
         metavar="INPUT",
-        help="video, folder of frames (natural order) or glob; none: the bundled clip",
+        help="video, folder of frames (natural order), bag, - (standard input) or glob; none: the bundled clip",
     )
     add_options(parser, DECODE)
 

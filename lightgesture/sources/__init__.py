@@ -1,17 +1,24 @@
-"""Video in: files and folders become frames, BGR with 8 bits, each with its time."""
+"""Pictures in: files, folders, bags and streams become frames, BGR with 8 bits, each with its time."""
 
 from lightgesture.sources.names import expand_inputs, natural_key
-from lightgesture.sources.pictures import is_picture_name, read_picture
-from lightgesture.sources.registry import DEFAULT_FPS, SOURCES, open_source
-from lightgesture.sources.types import Source
+from lightgesture.sources.pictures import is_picture_name, read_picture, to_image
+from lightgesture.sources.registry import LIVE_SOURCES, SOURCES, live_source, open_source
+from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
+from lightgesture.sources.types import Content, LiveSource, Source
 
 __all__ = [
     "DEFAULT_FPS",
+    "LIVE_SOURCES",
     "SOURCES",
+    "Content",
+    "LiveSource",
     "Source",
+    "SourceOptions",
     "expand_inputs",
     "is_picture_name",
+    "live_source",
     "natural_key",
     "open_source",
     "read_picture",
+    "to_image",
 ]

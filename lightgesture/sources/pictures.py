@@ -55,6 +55,16 @@ def read_picture(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
         raise InputError(f"{os.fspath(path)}: {error}; save it with 8 or 16 bits a channel") from error
 
 
+def to_image(content: bytes | NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A picture of a stream, uint8 (height, width, 3), BGR. InputError: the JPEG file is none that can be decoded."""
+    if not isinstance(content, bytes):
+        return content
+    image = _decode(content)
+    if image is None:
+        raise InputError("is damaged")
+    return to_bgr8(image)
+
+
 def to_bgr8(image: NDArray[Any]) -> NDArray[np.uint8]:
     """Convert uint8 or uint16, (height, width) or (height, width, 1, 3 or 4), to uint8 (height, width, 3).
 

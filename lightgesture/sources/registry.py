@@ -2,40 +2,99 @@
 
 import glob
 import os
+import stat
 from collections.abc import Callable
 
-from lightgesture.errors import InputError
+from lightgesture.errors import InputError, UsageError
+from lightgesture.sources.bag import BagFile, is_bag
+from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder
-from lightgesture.sources.types import Source
+from lightgesture.sources.http_stream import HttpStream
+from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
+from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
+from lightgesture.sources.types import LiveSource, Source
 from lightgesture.sources.video import VideoFile
 
-DEFAULT_FPS = 30.0
-"""Frames a second of a folder of frames, where the user names no other."""
-
-SOURCES: dict[str, Callable[[str, float], Source]] = {
-    "folder": FrameFolder,
-    "video": lambda path, fps: VideoFile(path),  # noqa: ARG005 - the container has its own clock
+SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
+    "bag": lambda path, options: BagFile(path, options.topic),
+    "folder": lambda path, options: FrameFolder(path, options.fps),
+    "standard input": lambda _, options: StandardInput(options),
+    "video": lambda path, _: VideoFile(path),
 }
-"""Kind of input to what opens it, given the path and the rate that is used where there are no time stamps."""
+"""Kind of input to what opens it, given its name and what the user says about it."""
+
+LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
+    "camera": open_camera,
+    "gstreamer": lambda line, _: open_gstreamer(line),
+    "http": lambda address, _: HttpStream(address),
+    "network": lambda address, _: open_network(address),
+    "standard input": lambda _, options: StandardInputStream(options),
+}
+"""Kind of stream to what reads it, given its name and what the user says about it."""
 
 
-def open_source(path: str | os.PathLike[str], fps: float = DEFAULT_FPS) -> Source:
-    """Open a video file or a folder of frames; use the result in a `with` block and iterate it once.
+def open_source(
+    path: str | os.PathLike[str],
+    fps: float = DEFAULT_FPS,
+    *,
+    size: tuple[int, int] | None = None,
+    topic: str | None = None,
+) -> Source:
+    """Open a video, a folder of frames, a bag, or standard input (`-`); use it in a `with` block, iterate it once.
 
-    fps: frames a second of a folder, above 0; a video has its own time stamps. InputError: one line that
-    says what is wrong with this input.
+    fps: frames a second of a folder or of standard input, above 0; others have their own time stamps. size: width and
+    height of raw pictures on standard input. topic: the image topic of a bag. InputError: one line that says what is
+    wrong with this input.
     """
     name = os.fspath(path)
-    return SOURCES[_kind(name)](name, fps)
+    return SOURCES[_kind(name)](name, SourceOptions(fps, size, topic))
+
+
+def live_source(name: str, options: SourceOptions) -> LiveSource:
+    """The stream of that name, not yet opened. UsageError: it is none, or cannot be read by this installation."""
+    return LIVE_SOURCES[_live_kind(name)](name, options)
 
 
 def _kind(name: str) -> str:
+    if name == STANDARD_INPUT and not os.path.lexists(name):
+        return "standard input"
+    if is_bag(name):
+        return "bag"
     if os.path.isdir(name):
         return "folder"
     if os.path.isfile(name):
         return "video"
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
+    if "://" in name:
+        raise InputError(f"{name}: is a stream; decode it with `lightgesture live`")
     if glob.has_magic(name):
         raise InputError(f"{name}: matches no file; check the pattern")
     raise InputError(f"{name}: no such file or folder; check the name")
+
+
+def _live_kind(name: str) -> str:
+    scheme = name.partition("://")[0].lower() if "://" in name else ""
+    if name == STANDARD_INPUT:
+        return "standard input"
+    if scheme in ("http", "https"):
+        return "http"
+    if scheme in NETWORK_SCHEMES:
+        return "network"
+    if " ! " in name:
+        return "gstreamer"
+    if name.isdecimal() or _is_device(name) or name.startswith("/dev/"):
+        return "camera"
+    if os.path.exists(name):
+        raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
+    raise UsageError(
+        f"{name}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), a GStreamer pipeline "
+        "or - for standard input"
+    )
+
+
+def _is_device(name: str) -> bool:
+    try:
+        return stat.S_ISCHR(os.stat(name).st_mode)
+    except (OSError, ValueError):
+        return False

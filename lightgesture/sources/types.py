@@ -4,7 +4,13 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Protocol, Self
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lightgesture.frames import Frame
+
+Content = bytes | NDArray[np.uint8]
+"""A picture as a stream brings it: a JPEG file, or uint8 (height, width, 3), BGR."""
 
 
 class Source(Protocol):
@@ -25,3 +31,23 @@ class Source(Protocol):
     ) -> None: ...
 
     def __iter__(self) -> Iterator[Frame]: ...
+
+
+class LiveSource(Protocol):
+    """A stream of pictures that come as time goes by; `with` opens it, as often as it breaks off.
+
+    name: for messages and records, without a password. is_reopened: whether opening it again may bring more.
+    Opening and iterating raise InputError where the stream cannot be opened or breaks off. What is wrong with the
+    name or with this installation is told by a UsageError when the object is made.
+    """
+
+    name: str
+    is_reopened: bool
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+    def __iter__(self) -> Iterator[Content]: ...

@@ -7,6 +7,7 @@ from lightgesture import Pipeline
 from lightgesture.decoding import SAMPLE
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.models import load_classifier
+from lightgesture.pipeline import KEPT_TIMES, StageClock
 from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 from lightgesture.sources import open_source
@@ -289,3 +290,13 @@ def test_hold_may_be_given_in_seconds():
         if event.type == "word"
     ]
     assert said == [2]
+
+
+def test_times_of_a_long_stream_take_no_more_memory():
+    clock = StageClock()
+    for _ in range(KEPT_TIMES + 500):
+        with clock.stage("colour"):
+            pass
+        clock.end_frame()
+    assert len(clock._frames) == len(clock._stages["colour"]) == KEPT_TIMES
+    assert set(clock.per_stage()) == {"colour"}

@@ -5,7 +5,7 @@ import argparse
 import pytest
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.settings import DECODE, DecodeSettings, add_options, load_settings
+from lightgesture.settings import DECODE, LIVE, DecodeSettings, add_options, load_settings
 
 
 def load(*arguments):
@@ -43,6 +43,8 @@ def test_every_option_may_stand_in_the_file(config):
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
         'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
+        'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
+        'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nhook = ["say hello"]\n'
     )
     settings = load("--config", path)
     assert settings.model_dump() == {
@@ -63,7 +65,14 @@ def test_every_option_may_stand_in_the_file(config):
         "plot": True,
         "jobs": 3,
         "cluster": "tcp://h:1",
+        "size": "640x480",
+        "topic": "/camera",
+        "udp": ["rov:9000"],
+        "mavlink": ["udpout:rov:14550"],
+        "mavlink_map": "/map.toml",
+        "hook": ["say hello"],
     }
+    assert settings.width_height == (640, 480)
 
 
 def test_one_hold_takes_the_place_of_the_other(config):
@@ -141,3 +150,12 @@ def test_wrong_key_through_the_command_line(run, config, make_video):
     assert result.status == ExitStatus.USAGE
     assert result.err == [f"lightgesture: {path}: hodl: unknown key; did you mean 'hold'?"]
     assert result.out == []
+
+
+def test_options_that_may_be_given_more_than_once():
+    parser = argparse.ArgumentParser(allow_abbrev=False)
+    add_options(parser, LIVE)
+    settings = load_settings(parser.parse_args(["--udp", "a:1", "--udp", "b:2", "--size", "8x6"]))
+    assert settings.udp == ["a:1", "b:2"]
+    assert (settings.width_height, DecodeSettings().width_height) == ((8, 6), None)
+    assert "(default: [])" not in parser.format_help()

@@ -161,7 +161,7 @@ def test_frames_of_another_size_are_passed_on(make_folder, make_picture):
 
 
 def test_each_kind_of_source_has_a_class():
-    assert set(SOURCES) == {"folder", "video"}
+    assert set(SOURCES) == {"bag", "folder", "standard input", "video"}
 
 
 @pytest.mark.parametrize("suffix", [".png", ".tif"])

@@ -1,0 +1,27 @@
+"""`lightgesture live`: a camera or a stream to instructions, as they are signed."""
+
+import argparse
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    from lightgesture.settings import LIVE, add_options
+
+    parser.add_argument(
+        "source",
+        metavar="SOURCE",
+        help="camera (0, /dev/video0), address (http:// for MJPEG, rtsp://, udp://), GStreamer pipeline that ends in "
+        "appsink, or - (standard input: MJPEG, or raw BGR with --size)",
+    )
+    add_options(parser, LIVE)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Decode until the stream ends for good or a signal comes; 0, or 130 after Ctrl-C."""
+    from lightgesture.console import native_messages_muted
+    from lightgesture.live.running import run_live
+    from lightgesture.settings import load_settings
+
+    settings = load_settings(args)
+    with native_messages_muted():
+        return run_live(args.source, settings)

@@ -1,0 +1,135 @@
+"""The loop of live decoding: newest picture, pipeline, records out, a heartbeat each second."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from statistics import median
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.errors import InputError
+from lightgesture.fsm import State
+from lightgesture.live.listener import Listener
+from lightgesture.live.mailbox import Mailbox, Snapshot
+from lightgesture.live.reader import Report
+from lightgesture.live.settings import LiveSettings
+from lightgesture.pipeline import Pipeline
+from lightgesture.records import FrameRecord, HeartbeatRecord, Record
+from lightgesture.results import DebugPictures
+from lightgesture.sources import to_image
+
+
+class Outlet(Protocol):
+    """Where records go; it never blocks. `is_gone`: nobody takes them any more."""
+
+    @property
+    def is_gone(self) -> bool: ...
+
+    def put(self, record: Record) -> None: ...
+
+
+class LiveLoop:
+    """Takes the newest picture from `mailbox` whenever the last one is done.
+
+    source: the name in the heartbeats. pipeline: must give frame records, which listeners need. frames: whether they
+    go to the outlets too. clock: seconds since the start, the same as that of the reader. report: takes messages.
+    """
+
+    def __init__(
+        self,
+        source: str,
+        mailbox: Mailbox,
+        pipeline: Pipeline,
+        outlets: Sequence[Outlet],
+        *,
+        clock: Callable[[], float],
+        report: Report,
+        listeners: Sequence[Listener] = (),
+        frames: bool = False,
+        debug: DebugPictures | None = None,
+        settings: LiveSettings | None = None,
+    ) -> None:
+        self._source, self._mailbox, self._pipeline, self._outlets = source, mailbox, pipeline, outlets
+        self._clock, self._report, self._listeners = clock, report, listeners
+        self._frames, self._debug, self._settings = frames, debug, settings or LiveSettings()
+        self._processed = self._unreadable = 0
+        self._spent_ms: list[float] = []
+        self._state = "idle"
+        self._seen_s = clock()
+        self._is_silent = False
+
+    def run(self, stopping: threading.Event) -> None:
+        """Decode until `stopping` is set, the stream ends for good, or nobody takes the records any more."""
+        beat_s = self._clock() + self._settings.heartbeat_s
+        while not stopping.is_set() and not self._is_unheard():
+            # The thread that reads and those that send come first, so that the next picture is the newest there is and
+            # the last record is out: on one core they would else wait until this thread's turn is over.
+            time.sleep(self._settings.breath_s)
+            wait_s = min(self._settings.poll_s, max(0.0, beat_s - self._clock()))
+            snapshot = self._mailbox.take(wait_s)
+            if snapshot is not None:
+                self._take_in(snapshot)
+            elif self._mailbox.is_closed:
+                break
+            now_s = self._clock()
+            if now_s >= beat_s:
+                self._beat(now_s)
+                # After a stall one beat makes up for those that were missed.
+                beat_s = max(beat_s + self._settings.heartbeat_s, now_s)
+        self._publish(None, self._pipeline.finish())
+
+    @property
+    def processed(self) -> int:
+        """Pictures that went through the pipeline."""
+        return self._processed
+
+    def _is_unheard(self) -> bool:
+        return not self._listeners and bool(self._outlets) and all(outlet.is_gone for outlet in self._outlets)
+
+    def _take_in(self, snapshot: Snapshot) -> None:
+        start = time.perf_counter()
+        try:
+            image = to_image(snapshot.content)
+        except InputError as error:
+            self._unreadable += 1
+            if self._unreadable == 1:
+                self._report(
+                    f"{self._source}: picture {snapshot.index} {error}; such pictures are passed over"
+                )
+            return
+        if self._debug is not None:
+            self._debug.select(snapshot.time_s)
+        records = self._pipeline.process(image, snapshot.time_s, snapshot.index)
+        self._spent_ms.append((time.perf_counter() - start) * 1e3)
+        self._processed += 1
+        self._seen_s, self._is_silent = snapshot.time_s, False
+        self._publish(image, records)
+
+    def _beat(self, now_s: float) -> None:
+        spent_ms = round(median(self._spent_ms), 3) if self._spent_ms else 0.0
+        self._spent_ms.clear()
+        beat = HeartbeatRecord(
+            source=self._source,
+            time_s=round(now_s, 3),
+            frames=self._processed,
+            dropped=self._mailbox.dropped,
+            ms_per_frame=spent_ms,
+            state=self._state,
+        )
+        self._publish(None, [beat])
+        if now_s - self._seen_s > self._settings.silence_s and not self._is_silent:
+            self._is_silent = True
+            self._report(f"{self._source}: no picture for {now_s - self._seen_s:.0f} s")
+
+    def _publish(self, image: NDArray[np.uint8] | None, records: Sequence[Record]) -> None:
+        for record in records:
+            if isinstance(record, State):
+                self._state = record.state
+            if isinstance(record, FrameRecord) and not self._frames:
+                continue
+            for outlet in self._outlets:
+                outlet.put(record)
+        for listener in self._listeners:
+            listener.show(image, records)

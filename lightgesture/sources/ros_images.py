@@ -1,0 +1,79 @@
+"""Image messages of ROS 1 and ROS 2, raw and compressed, to pictures."""
+
+import sys
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.sources.pictures import to_bgr8
+
+_RAW, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+IMAGE_TYPES = (_RAW, _COMPRESSED)
+"""Types of the messages that hold a picture."""
+
+
+class _Layout(NamedTuple):
+    """Bits and values of a pixel in a row, and what OpenCV makes BGR with (None: BGR, BGRA or grey already)."""
+
+    bits: int
+    channels: int
+    conversion: int | None = None
+
+
+_LAYOUTS = {
+    **{name: _Layout(8, 1) for name in ("mono8", "8UC1")},
+    **{name: _Layout(16, 1) for name in ("mono16", "16UC1")},
+    **{name: _Layout(8, 3) for name in ("bgr8", "8UC3")},
+    **{name: _Layout(8, 4) for name in ("bgra8", "8UC4")},
+    "rgb8": _Layout(8, 3, cv2.COLOR_RGB2BGR),
+    "rgba8": _Layout(8, 4, cv2.COLOR_RGBA2BGR),
+    "bgr16": _Layout(16, 3),
+    "rgb16": _Layout(16, 3, cv2.COLOR_RGB2BGR),
+    **{name: _Layout(8, 2, cv2.COLOR_YUV2BGR_UYVY) for name in ("uyvy", "yuv422")},
+    **{name: _Layout(8, 2, cv2.COLOR_YUV2BGR_YUYV) for name in ("yuyv", "yuv422_yuy2")},
+    # ROS names the first two pixels of the first row, OpenCV those of the second row from the second column.
+    "bayer_rggb8": _Layout(8, 1, cv2.COLOR_BayerBG2BGR),
+    "bayer_bggr8": _Layout(8, 1, cv2.COLOR_BayerRG2BGR),
+    "bayer_gbrg8": _Layout(8, 1, cv2.COLOR_BayerGR2BGR),
+    "bayer_grbg8": _Layout(8, 1, cv2.COLOR_BayerGB2BGR),
+}
+
+
+def message_to_bgr8(message: Any) -> NDArray[np.uint8]:
+    """Convert a deserialized message, raw or compressed, to uint8 (height, width, 3), BGR.
+
+    ValueError: its encoding is not known, its data are too short, or it is no picture.
+    """
+    return _decompress(message) if hasattr(message, "format") else _unpack(message)
+
+
+def _decompress(message: Any) -> NDArray[np.uint8]:
+    data = np.frombuffer(message.data, np.uint8)
+    try:
+        image = cv2.imdecode(data, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH) if data.size else None
+    except cv2.error:  # a header that promises more pixels than OpenCV takes
+        image = None
+    if image is None:
+        raise ValueError(f"holds no picture (format {message.format!r})")
+    return to_bgr8(image)
+
+
+def _unpack(message: Any) -> NDArray[np.uint8]:
+    layout = _LAYOUTS.get(message.encoding)
+    if layout is None:
+        raise ValueError(f"has encoding {message.encoding!r}, known are {', '.join(_LAYOUTS)}")
+    height, width, step = int(message.height), int(message.width), int(message.step)
+    row = width * layout.channels * layout.bits // 8
+    data = np.frombuffer(message.data, np.uint8)
+    if not row or not height or step < row or data.size < height * step:
+        raise ValueError(f"holds {data.size} bytes, too few for {width} x {height} {message.encoding}")
+    rows = np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :row])
+    if layout.bits == 16:
+        is_swapped = bool(message.is_bigendian) != (sys.byteorder == "big")
+        values: NDArray[Any] = rows.view(np.uint16)
+        rows = values.byteswap() if is_swapped else values
+    shape = (height, width) if layout.channels == 1 else (height, width, layout.channels)
+    image: NDArray[Any] = rows.reshape(shape)
+    return to_bgr8(image if layout.conversion is None else cv2.cvtColor(image, layout.conversion))

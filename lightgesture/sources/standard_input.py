@@ -1,0 +1,116 @@
+"""Pictures from standard input: JPEG files one after the other, or raw BGR of a given size."""
+
+import io
+import sys
+from collections.abc import Iterator
+from types import TracebackType
+from typing import IO, Self
+
+import numpy as np
+
+from lightgesture.errors import InputError
+from lightgesture.frames import Frame
+from lightgesture.sources.jpeg import JpegSplitter
+from lightgesture.sources.pictures import to_image
+from lightgesture.sources.settings import STREAM, SourceOptions, StreamSettings
+from lightgesture.sources.types import Content
+
+STANDARD_INPUT = "-"
+"""What the user writes for it."""
+
+
+class StandardInputStream:
+    """The pictures of standard input as they come, still encoded if they are JPEG files.
+
+    With `options.size` the bytes are raw pictures, blue, green, red, without anything between them.
+    `stream`: another stream of bytes in its place. InputError at the end: not one picture came.
+    """
+
+    def __init__(
+        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
+    ) -> None:
+        self.name = STANDARD_INPUT
+        self.is_reopened = False
+        self._size, self._settings = options.size, settings
+        self._stream = stream or _open_raw()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Standard input is not ours to close."""
+
+    def __iter__(self) -> Iterator[Content]:
+        is_empty = True
+        for content in self._jpegs() if self._size is None else self._raws(*self._size):
+            is_empty = False
+            yield content
+        if is_empty:
+            wanted = "JPEG picture" if self._size is None else "raw picture of {}x{}".format(*self._size)
+            raise InputError(
+                f"standard input: held no whole {wanted}; send MJPEG, or raw BGR with --size WIDTHxHEIGHT"
+            )
+
+    def _chunks(self) -> Iterator[bytes]:
+        while chunk := self._stream.read(self._settings.chunk_bytes):
+            yield chunk
+
+    def _jpegs(self) -> Iterator[bytes]:
+        splitter = JpegSplitter(self._settings.max_picture_bytes, self._settings.max_pixels)
+        for chunk in self._chunks():
+            yield from splitter.feed(chunk)
+
+    def _raws(self, width: int, height: int) -> Iterator[Content]:
+        length = width * height * 3
+        buffer = bytearray()
+        for chunk in self._chunks():
+            buffer += chunk
+            while len(buffer) >= length:
+                yield np.frombuffer(bytes(buffer[:length]), np.uint8).reshape(height, width, 3).copy()
+                del buffer[:length]
+
+
+def _open_raw() -> IO[bytes]:
+    """Standard input without a buffer.
+
+    It gives what is there: a full block would keep a small picture waiting for the next one. And it has no lock, which
+    a thread that waits for a picture would hold while the program ends; Python then aborts.
+    """
+    try:
+        return io.FileIO(sys.stdin.fileno(), closefd=False)
+    except (OSError, ValueError):  # something else stands in its place
+        return sys.stdin.buffer
+
+
+class StandardInput:
+    """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
+
+    def __init__(
+        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
+    ) -> None:
+        self.name = STANDARD_INPUT
+        self.frame_count: int | None = None
+        self._fps = options.fps
+        self._stream = StandardInputStream(options, settings, stream)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Standard input is not ours to close."""
+
+    def __iter__(self) -> Iterator[Frame]:
+        left_out: list[str] = []
+        for index, content in enumerate(self._stream):
+            try:
+                image = to_image(content)
+            except InputError as error:
+                left_out.append(f"picture {index} {error}")
+            else:
+                yield Frame(image, index, round(index / self._fps, 6))
+        if left_out:
+            raise InputError(f"standard input: {len(left_out)} pictures left out; the first: {left_out[0]}")

@@ -1,0 +1,268 @@
+"""MAVLink over loopback, read by pymavlink's own parser."""
+
+import itertools
+import socket
+import time
+
+import pytest
+from pymavlink.dialects.v20 import common
+
+from lightgesture.errors import UsageError
+from lightgesture.settings import DecodeSettings
+from lightgesture.sinks import SinkError, make_sinks
+from lightgesture.sinks.mavlink import MavlinkSink, text_chunks
+from lightgesture.sinks.mavlink_map import COMMANDS, MavlinkMap, load_map
+
+FORBIDDEN = (
+    "ARM_DISARM",
+    "PREARM",
+    "FLIGHTTERMINATION",
+    "SET_MODE",
+    "MISSION_START",
+    "REBOOT",
+    "AUX_FUNCTION",
+    "LAND",
+)
+
+
+@pytest.fixture
+def station():
+    """A ground station on UDP: `address`, and `messages()`, what came."""
+
+    class Station:
+        def __init__(self):
+            self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            self.socket.bind(("127.0.0.1", 0))
+            self.socket.settimeout(0.2)
+            self.link = f"udpout:127.0.0.1:{self.socket.getsockname()[1]}"
+            self.parser = common.MAVLink(None)
+
+        def messages(self):
+            found = []
+            while True:
+                try:
+                    content = self.socket.recv(65536)
+                except TimeoutError:
+                    return found
+                assert content[0] == 0xFD  # MAVLink 2
+                found += self.parser.parse_buffer(content)
+
+    one = Station()
+    yield one
+    one.socket.close()
+
+
+def send(link, *records, mapping=None):
+    sink = MavlinkSink(link, mapping)
+    sink.open()
+    for record in records:
+        assert sink.wants(record)
+        sink.send(record)
+    sink.close()
+
+
+def test_heartbeat_of_a_companion_that_is_not_armed(station, heartbeat):
+    send(station.link, heartbeat(), heartbeat())
+    first, second = station.messages()
+    assert (first.get_srcSystem(), first.get_srcComponent()) == (1, common.MAV_COMP_ID_ONBOARD_COMPUTER)
+    assert first.type == common.MAV_TYPE_ONBOARD_CONTROLLER
+    assert first.autopilot == common.MAV_AUTOPILOT_INVALID
+    assert (first.base_mode, first.system_status) == (0, common.MAV_STATE_ACTIVE)
+    assert second.get_seq() == first.get_seq() + 1
+
+
+def test_an_instruction_is_a_text_and_nothing_else(station, instruction):
+    send(station.link, instruction())
+    (message,) = station.messages()
+    assert (message.get_type(), message.severity) == ("STATUSTEXT", common.MAV_SEVERITY_NOTICE)
+    assert (message.text, message.id, message.chunk_seq) == ("Diver: STOP HOVER 50 GO", 0, 0)
+
+
+def test_long_texts_come_in_chunks_that_belong_together(station, instruction):
+    texts = ["STOP " + " ".join(["HOVER 50"] * 12) + " GO", "X" * 93]
+    send(station.link, *(instruction(text=text) for text in texts))
+    groups = [list(group) for _, group in itertools.groupby(station.messages(), lambda message: message.id)]
+    assert ["".join(message.text for message in group) for group in groups] == [
+        "Diver: " + text for text in texts
+    ]
+    assert [[message.chunk_seq for message in group] for group in groups] == [[0, 1, 2], [0, 1, 2]]
+    assert len({group[0].id for group in groups} - {0}) == 2
+
+
+def test_chunks():
+    assert text_chunks("") == [b""]
+    assert text_chunks("a" * 50) == [b"a" * 50]
+    assert text_chunks("a" * 51) == [b"a" * 50, b"a"]
+    assert text_chunks("a" * 100) == [b"a" * 50, b"a" * 50, b""]
+
+
+@pytest.fixture
+def mapping(tmp_path):
+    path = tmp_path / "map.toml"
+    path.write_text(
+        "target_system = 7\ntarget_component = 2\n"
+        '[[value]]\naction = "HOVER"\nname = "LG_HOVER"\nvalue = "duration_s"\nmissing = -1\n'
+        '[[value]]\naction = "HOVER"\nname = "LG_SURE"\nvalue = "confidence"\nis_float = true\n'
+        '[[value]]\naction = "PARAM"\nparameter = 3\nchange = "DECREASE"\nname = "TENLETTERS"\nvalue = 3e9\n'
+        '[[command]]\naction = "SNAP"\ncommand = "MAV_CMD_IMAGE_START_CAPTURE"\nparams = [0, 0.5, 1]\n'
+        '[[command]]\naction = "EXEC"\ncommand = "MAV_CMD_USER_1"\nparams = ["program", "duration_s"]\n'
+    )
+    return load_map(str(path))
+
+
+def test_values_that_the_map_names(station, instruction, mapping):
+    send(station.link, instruction(), instruction(duration_s=None), mapping=mapping)
+    values = [message for message in station.messages() if message.get_type() != "STATUSTEXT"]
+    assert [message.get_type() for message in values] == ["NAMED_VALUE_INT", "NAMED_VALUE_FLOAT"] * 2
+    assert [message.name for message in values] == ["LG_HOVER", "LG_SURE"] * 2
+    assert [message.value for message in values] == pytest.approx([50, 0.95, -1, 0.95])
+    assert {message.time_boot_ms for message in values} == {4370}
+
+
+def test_rules_for_one_parameter(station, instruction, mapping):
+    setting = {"action": "PARAM", "parameter": 3, "duration_s": None}
+    send(
+        station.link,
+        instruction(**setting, change="INCREASE"),
+        instruction(**setting, change="DECREASE"),
+        mapping=mapping,
+    )
+    assert [message.get_type() for message in station.messages()] == [
+        "STATUSTEXT",
+        "STATUSTEXT",
+        "NAMED_VALUE_INT",
+    ]
+
+
+def test_commands_that_the_map_names(station, instruction, mapping):
+    send(station.link, instruction(action="SNAP"), instruction(action="EXEC", program=2), mapping=mapping)
+    snap, execute = (one for one in station.messages() if one.get_type() == "COMMAND_LONG")
+    assert (snap.target_system, snap.target_component, snap.command) == (7, 2, 2000)
+    assert [snap.param1, snap.param2, snap.param3, snap.param7] == [0, 0.5, 1, 0]
+    assert (execute.command, execute.param1, execute.param2) == (31010, 2, 50)
+
+
+def test_nothing_that_may_be_sent_arms_or_disarms(tmp_path):
+    """Every permitted number is what the dialect calls so; everything else is refused, arming by all its names."""
+    assert {name: getattr(common, name) for name in COMMANDS} == COMMANDS
+    every = [name for name in vars(common) if name.startswith("MAV_CMD_")]
+    dangerous = [name for name in every if any(word in name for word in FORBIDDEN)]
+    assert "MAV_CMD_COMPONENT_ARM_DISARM" in dangerous
+    assert not set(dangerous) & set(COMMANDS)
+    path = tmp_path / "map.toml"
+    for name in (*dangerous, "400", "mav_cmd_component_arm_disarm"):
+        path.write_text(f'[[command]]\naction = "HOVER"\ncommand = "{name}"\n')
+        with pytest.raises(UsageError, match="is not permitted; permitted are"):
+            load_map(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[[command]]\naction = 'A'\ncommand = 400\n", "command.0.command: Input should be a valid string"),
+        (
+            "[[command]]\naction = 'A'\ncommand = 'MAV_CMD_USER_1'\nparams = [1,2,3,4,5,6,7,8]\n",
+            "at most 7 items",
+        ),
+        ("[[value]]\naction = 'A'\nname = 'ELEVENCHARS'\nvalue = 1\n", "at most 10 characters"),
+        ("[[value]]\naction = 'A'\nname = 'N'\nvalue = 'words'\n", "value.0.value"),
+        ("[[value]]\naction = 'A'\nname = 'N'\nvalue = nan\n", "finite number"),
+        ("[[value]]\nname = 'N'\nvalue = 1\n", "value.0.action: Field required"),
+        ("target_sytem = 1\n", "target_sytem: Extra inputs are not permitted"),
+        ("target_system = 0\n", "target_system"),
+        ("target_system = \n", "is no valid TOML"),
+    ],
+)
+def test_maps_that_are_wrong(tmp_path, text, reason):
+    path = tmp_path / "map.toml"
+    path.write_text(text)
+    with pytest.raises(UsageError) as caught:
+        load_map(str(path))
+    assert str(caught.value).startswith(f"{path}: ")
+    assert reason in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_no_map(tmp_path):
+    with pytest.raises(UsageError, match=r"cannot be read \(No such file"):
+        load_map(str(tmp_path / "none.toml"))
+    with pytest.raises(UsageError, match="--mavlink-map: is of no use without --mavlink"):
+        make_sinks(DecodeSettings(mavlink_map="map.toml"))
+
+
+def test_a_station_that_must_speak_first(heartbeat, station, capsys):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as unused:
+        unused.bind(("127.0.0.1", 0))
+        port = unused.getsockname()[1]
+    sink = MavlinkSink(f"udpin:127.0.0.1:{port}")
+    sink.open()
+    sink.send(heartbeat())
+    assert station.messages() == []
+    station.socket.sendto(b"anything", ("127.0.0.1", port))
+    sink.send(heartbeat())
+    assert [message.get_type() for message in station.messages()] == ["HEARTBEAT"]
+    sink.close()
+    assert capsys.readouterr().out == ""
+
+
+def send_until_it_fails(sink, record):
+    """A peer that has left is known once its answer to the last message is here."""
+    for _ in range(200):
+        sink.send(record)
+        time.sleep(0.01)
+
+
+def test_tcp_that_is_refused_and_that_is_closed(heartbeat, capsys):
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        sink = MavlinkSink(f"tcp:127.0.0.1:{server.getsockname()[1]}")
+        sink.open()
+        peer, _ = server.accept()
+        sink.send(heartbeat())
+        assert peer.recv(1) == b"\xfd"
+        peer.close()
+        with pytest.raises(SinkError, match=r"^mavlink tcp:127.*: broke off \("):
+            send_until_it_fails(sink, heartbeat())
+        sink.close()
+    with pytest.raises(SinkError, match=r"cannot be opened \(Connection refused\)"):
+        sink.open()
+    sink.close()
+    assert capsys.readouterr().out == ""  # the records' own place
+
+
+def test_a_udp_port_in_use(station):
+    port = station.link.rpartition(":")[2]
+    with pytest.raises(SinkError, match=r"^mavlink udpin:.*: cannot be opened \(Address already in use\)"):
+        MavlinkSink(f"udpin:127.0.0.1:{port}").open()
+
+
+def test_a_serial_device_that_is_not_there():
+    with pytest.raises(SinkError, match=r"^mavlink /dev/no-such-tty,57600: cannot be opened"):
+        MavlinkSink("/dev/no-such-tty,57600").open()
+
+
+@pytest.mark.parametrize(
+    "device",
+    [
+        "",
+        "udpout:host",
+        "udpout::14550",
+        "udpout:host:99999",
+        "csv:a.csv",
+        "dive.tlog",
+        "/bin/true",
+        "tcp:a:b:1",
+    ],
+)
+def test_only_links_are_opened(device):
+    with pytest.raises(UsageError, match="is no link; write udpout, udpin"):
+        MavlinkSink(device)
+
+
+def test_without_the_extra(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "pymavlink", None)
+    with pytest.raises(UsageError, match=r"install lightgesture\[mavlink\]"):
+        MavlinkSink("udpout:127.0.0.1:14550")
+
+
+def test_a_map_of_nothing_sends_nothing(instruction):
+    assert list(MavlinkMap().values(instruction())) == list(MavlinkMap().commands(instruction())) == []

@@ -1,0 +1,175 @@
+"""Queues before sinks that fail, block and leave."""
+
+import threading
+import time
+
+import pytest
+
+from lightgesture.backoff import Backoff, BackoffSettings
+from lightgesture.sinks import Outbox, OutboxSettings, RecordError, SinkError, SinkGoneError
+
+QUICK = OutboxSettings(
+    capacity=4, max_age_s=5.0, drain_s=1.0, retry=BackoffSettings(first_s=0.01, longest_s=0.02)
+)
+
+
+class FakeSink:
+    """Keeps what it is sent; raises what stands next in `opening` and `sending`, None being a success."""
+
+    def __init__(self, opening=(), sending=(), *, keeps_old=False):
+        self.name = "fake"
+        self.keeps_old = keeps_old
+        self.opening, self.sending = list(opening), list(sending)
+        self.sent, self.opened, self.closed = [], 0, 0
+        self.may_send = threading.Event()
+        self.may_send.set()
+
+    def wants(self, record):
+        return record.frames >= 0
+
+    def open(self):
+        self.opened += 1
+        if self.opening and (error := self.opening.pop(0)):
+            raise error
+
+    def send(self, record):
+        assert self.may_send.wait(5)
+        if self.sending and (error := self.sending.pop(0)):
+            raise error
+        self.sent.append(record.frames)
+
+    def close(self):
+        self.closed += 1
+
+
+def wait_for(condition):
+    deadline = time.monotonic() + 5
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.002)
+
+
+def run(sink, records, settings=QUICK):
+    """Send all, stop, and give the messages."""
+    messages = []
+    outbox = Outbox(sink, messages.append, settings)
+    outbox.start()
+    for record in records:
+        outbox.put(record)
+    outbox.stop()
+    return messages
+
+
+def test_records_in_order_and_only_those_wanted(heartbeat):
+    sink = FakeSink()
+    assert run(sink, [heartbeat(frames) for frames in (1, -1, 2, 3)]) == []
+    assert (sink.sent, sink.opened, sink.closed) == ([1, 2, 3], 1, 1)
+
+
+def test_a_failure_is_told_once_and_what_failed_is_repeated(heartbeat):
+    down = SinkError("fake: no route")
+    sink = FakeSink(opening=[down, down, None], sending=[None, down, None])
+    messages = []
+    outbox = Outbox(sink, messages.append, QUICK)
+    outbox.start()
+    for frames in (1, 2, 3):
+        outbox.put(heartbeat(frames))
+    wait_for(lambda: len(sink.sent) == 3)
+    outbox.stop()
+    assert sink.sent == [1, 2, 3]
+    assert sink.opened == 4
+    first = ["fake: no route; trying again until it works", "fake: works again"]
+    assert messages == first + first
+
+
+def test_a_record_that_cannot_be_sent_is_not_repeated(heartbeat):
+    sink = FakeSink(sending=[RecordError("fake: too long"), RecordError("fake: too long"), None])
+    assert run(sink, [heartbeat(frames) for frames in (1, 2, 3)]) == ["fake: too long", "fake: works again"]
+    assert (sink.sent, sink.opened) == ([3], 1)
+
+
+def test_a_sink_that_blocks_delays_nobody_and_the_oldest_is_dropped(heartbeat):
+    sink = FakeSink()
+    sink.may_send.clear()
+    messages = []
+    outbox = Outbox(sink, messages.append, QUICK)
+    outbox.start()
+    outbox.put(heartbeat(0))
+    wait_for(lambda: not outbox._queue)  # the first is being sent
+    start = time.monotonic()
+    for frames in range(1, 1001):
+        outbox.put(heartbeat(frames))
+    assert time.monotonic() - start < 1
+    sink.may_send.set()
+    outbox.stop()
+    assert sink.sent == [0, 997, 998, 999, 1000]
+    assert messages == ["fake: 996 records were dropped"]
+    assert outbox.dropped == 996
+
+
+@pytest.mark.parametrize(("keeps_old", "sent"), [(False, [2]), (True, [1, 2])])
+def test_what_waited_for_too_long_is_not_sent_late(heartbeat, keeps_old, sent):
+    """An instruction that reaches a vehicle when the link is back may meet another situation."""
+    sink = FakeSink(opening=[SinkError("fake: down"), None], keeps_old=keeps_old)
+    settings = OutboxSettings(max_age_s=0.05, retry=BackoffSettings(first_s=0.15))
+    outbox = Outbox(sink, lambda text: None, settings)
+    outbox.start()
+    outbox.put(heartbeat(1))
+    time.sleep(0.1)
+    outbox.put(heartbeat(2))
+    wait_for(lambda: len(sink.sent) == len(sent))
+    outbox.stop()
+    assert sink.sent == sent
+
+
+def test_a_reader_that_has_gone(heartbeat):
+    sink = FakeSink(sending=[None, SinkGoneError()])
+    outbox = Outbox(sink, lambda text: None, QUICK)
+    outbox.start()
+    outbox.put(heartbeat(1))
+    assert not outbox.is_gone
+    outbox.put(heartbeat(2))
+    wait_for(lambda: outbox.is_gone)
+    outbox.put(heartbeat(3))
+    outbox.stop()
+    assert (sink.sent, outbox.dropped) == ([1], 0)
+
+
+def test_the_end_does_not_wait_for_a_sink_that_is_down(heartbeat):
+    sink = FakeSink(opening=[SinkError("fake: down")] * 99)
+    start = time.monotonic()
+    settings = OutboxSettings(retry=BackoffSettings(first_s=60.0, longest_s=60.0))
+    assert run(sink, [heartbeat(1)], settings) == [
+        "fake: down; trying again until it works",
+        "fake: 1 records were dropped",
+    ]
+    assert time.monotonic() - start < 1
+    assert sink.sent == []
+
+
+def test_the_end_does_not_wait_for_a_sink_that_blocks(heartbeat):
+    sink = FakeSink()
+    sink.may_send.clear()
+    messages = []
+    outbox = Outbox(sink, messages.append, OutboxSettings(drain_s=0.05))
+    outbox.start()
+    outbox.put(heartbeat(1))
+    wait_for(lambda: not outbox._queue)  # the first is being sent
+    outbox.put(heartbeat(2))
+    outbox.stop()
+    sink.may_send.set()
+    assert messages == ["fake: 1 records were dropped"]
+
+
+def test_a_defect_of_a_sink_is_told_and_ends_it_alone(heartbeat):
+    sink = FakeSink(sending=[ZeroDivisionError("oops")])
+    messages = run(sink, [heartbeat(1)])
+    assert messages == ["fake: gives up, which is a defect (ZeroDivisionError: oops)"]
+    assert sink.closed == 1
+
+
+def test_waits_grow_up_to_the_longest():
+    backoff = Backoff(BackoffSettings(first_s=1.0, factor=3.0, longest_s=5.0))
+    assert [backoff.next_wait() for _ in range(4)] == [1.0, 3.0, 5.0, 5.0]
+    backoff.reset()
+    assert backoff.next_wait() == 1.0

@@ -17,6 +17,7 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 COMMANDS = {
     "decode": "videos and folders of frames to instructions",
     "recognize": "single pictures to hands and their tokens",
+    "calibrate": "some seconds of open hands to a colour profile",
     "train": "build a model from labelled pictures",
     "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
     "synth": "render dives of a synthetic diver with their truth",

@@ -18,6 +18,7 @@ COMMANDS = {
     "decode": "videos and folders of frames to instructions",
     "recognize": "single pictures to hands and their tokens",
     "calibrate": "some seconds of open hands to a colour profile",
+    "doctor": "what runs on this machine, how fast, and what to do about what does not",
     "train": "build a model from labelled pictures",
     "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
     "synth": "render dives of a synthetic diver with their truth",

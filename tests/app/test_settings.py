@@ -5,7 +5,7 @@ import argparse
 import pytest
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.settings import DECODE, DecodeSettings, add_options, load_settings
+from lightgesture.settings import DECODE, DecodeSettings, add_options, load_settings, read_config
 
 
 def load(*arguments):
@@ -42,6 +42,7 @@ def test_every_option_may_stand_in_the_file(config):
         'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
+        'web = 8080\nweb-host = "::1"\n'
     )
     settings = load("--config", path)
     assert settings.model_dump() == {
@@ -55,6 +56,8 @@ def test_every_option_may_stand_in_the_file(config):
         "as_json": True,
         "frames": True,
         "out": "/o",
+        "web": 8080,
+        "web_host": "::1",
         "debug_dir": "/d",
         "quiet": True,
     }
@@ -124,3 +127,15 @@ def test_wrong_key_through_the_command_line(run, config, make_video):
     assert result.status == ExitStatus.USAGE
     assert result.err == [f"lightgesture: {path}: hodl: unknown key; did you mean 'hold'?"]
     assert result.out == []
+
+
+def test_the_page_is_for_live_streams_on_loopback_unless_told_otherwise(tmp_path):
+    config = tmp_path / "live.toml"
+    config.write_text("web = 8080\n")
+    assert read_config(str(config)) == {"web": 8080}
+    assert DecodeSettings().web is None
+    assert DecodeSettings().web_host == "127.0.0.1"
+    for wrong in ("0", "65536", '"8080"', "true"):
+        config.write_text(f"web = {wrong}\n")
+        with pytest.raises(UsageError, match="web"):
+            read_config(str(config))

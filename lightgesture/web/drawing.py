@@ -40,6 +40,7 @@ def _draw_hand(picture: Image, hand: Hand) -> None:
     (wide, tall), below = cv2.getTextSize(text, _FONT, scale, 1)
     # Above the box where there is room, and never outside the picture.
     left = int(np.clip(x, 0, max(picture.shape[1] - wide - 6, 0)))
-    base = y - below - 2 if y >= tall + below + 4 else min(y + tall + 4, picture.shape[0] - below - 2)
+    top, bottom = tall + 3, picture.shape[0] - below - 2
+    base = y - below - 2 if y - below - 2 >= top else max(min(y + tall + 4, bottom), top)
     cv2.rectangle(picture, (left, base - tall - 3), (left + wide + 6, base + below), colour, cv2.FILLED)
     cv2.putText(picture, text, (left + 3, base), _FONT, scale, _INK, 1, cv2.LINE_AA)

@@ -19,6 +19,8 @@ COMMANDS = {
     "decode": "videos, folders of frames and bags to instructions",
     "live": "a camera or a stream to instructions, as they are signed",
     "recognize": "single pictures to hands and their tokens",
+    "calibrate": "some seconds of open hands to a colour profile",
+    "doctor": "what runs on this machine, how fast, and what to do about what does not",
     "train": "build a model from labelled pictures",
     "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
     "grammar": "check, show, draw or explain a grammar file",

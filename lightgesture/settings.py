@@ -146,6 +146,21 @@ class DecodeSettings(BaseModel):
         "COMMAND",
         only=(LIVE,),
     )
+    web: int | None = _option(
+        None,
+        "serve a page with the annotated picture and the instructions",
+        "PORT",
+        only=(LIVE,),
+        ge=1,
+        le=65535,
+    )
+    web_host: str = _option(
+        "127.0.0.1",
+        "address that the page is served on; 0.0.0.0 lets the whole network look",
+        "HOST",
+        only=(LIVE,),
+        min_length=1,
+    )
     debug_dir: str | None = _option(
         None, "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png", "DIR", min_length=1
     )

@@ -5,7 +5,7 @@ import argparse
 import pytest
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.settings import DECODE, LIVE, DecodeSettings, add_options, load_settings
+from lightgesture.settings import DECODE, LIVE, DecodeSettings, add_options, load_settings, read_config
 
 
 def load(*arguments):
@@ -45,6 +45,7 @@ def test_every_option_may_stand_in_the_file(config):
         'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
         'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
         'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nhook = ["say hello"]\n'
+        'web = 8080\nweb-host = "::1"\n'
     )
     settings = load("--config", path)
     assert settings.model_dump() == {
@@ -59,6 +60,8 @@ def test_every_option_may_stand_in_the_file(config):
         "as_json": True,
         "frames": True,
         "out": "/o",
+        "web": 8080,
+        "web_host": "::1",
         "debug_dir": "/d",
         "quiet": True,
         "annotate": True,
@@ -159,3 +162,15 @@ def test_options_that_may_be_given_more_than_once():
     assert settings.udp == ["a:1", "b:2"]
     assert (settings.width_height, DecodeSettings().width_height) == ((8, 6), None)
     assert "(default: [])" not in parser.format_help()
+
+
+def test_the_page_is_for_live_streams_on_loopback_unless_told_otherwise(tmp_path):
+    config = tmp_path / "live.toml"
+    config.write_text("web = 8080\n")
+    assert read_config(str(config)) == {"web": 8080}
+    assert DecodeSettings().web is None
+    assert DecodeSettings().web_host == "127.0.0.1"
+    for wrong in ("0", "65536", '"8080"', "true"):
+        config.write_text(f"web = {wrong}\n")
+        with pytest.raises(UsageError, match="web"):
+            read_config(str(config))

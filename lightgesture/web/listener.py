@@ -1,0 +1,105 @@
+"""The server with its threads, as a listener of the live loop."""
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from types import TracebackType
+from typing import Self
+
+import cv2
+
+from lightgesture.errors import UsageError
+from lightgesture.features.types import Image
+from lightgesture.records import Record
+from lightgesture.web.board import Board
+from lightgesture.web.drawing import HandDrawer
+from lightgesture.web.server import WebServer
+from lightgesture.web.settings import WebSettings
+
+LOOPBACK = "127.0.0.1"
+STOP_S = 0.1
+"""Longest time until the server heeds that it shall stop."""
+
+Draw = Callable[[Image, Sequence[Record]], Image]
+"""Draws records on a picture, uint8 (height, width, 3) BGR, and gives a new one."""
+
+
+class WebListener:
+    """Serves the page; use it in a `with` block, or `start` and `stop` it.
+
+    port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
+    draw: what makes the annotated picture. `show` never waits for a browser, and draws nothing itself.
+    """
+
+    def __init__(
+        self, port: int, host: str = LOOPBACK, draw: Draw | None = None, settings: WebSettings | None = None
+    ) -> None:
+        self._port, self._host = port, host
+        self._draw = draw or HandDrawer()
+        self._settings = settings or WebSettings()
+        self._board = Board(self._settings.entries)
+        self._server: WebServer | None = None
+        self._threads: list[threading.Thread] = []
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    @property
+    def address(self) -> str:
+        """Where a browser finds the page, once started."""
+        if self._server is None:
+            raise RuntimeError("the server is not started")
+        host = f"[{self._host}]" if ":" in self._host else self._host
+        return f"http://{host}:{self._server.server_port}/"
+
+    def start(self) -> None:
+        """Begin to serve. UsageError: the address cannot be had."""
+        try:
+            self._server = WebServer(self._host, self._port, self._board, self._settings)
+        except OSError as error:
+            raise UsageError(
+                f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"
+            ) from None
+        serve = partial(self._server.serve_forever, STOP_S)
+        for name, work in (("web server", serve), ("web pictures", self._encode)):
+            thread = threading.Thread(target=work, name=name, daemon=True)
+            thread.start()
+            self._threads.append(thread)
+
+    def stop(self) -> None:
+        """End all connections and free the port."""
+        self._board.close()
+        if self._server is not None:
+            self._server.shutdown()
+            self._server.server_close()
+        for thread in self._threads:
+            thread.join()
+        self._threads.clear()
+
+    def show(self, image_bgr: Image | None, records: Sequence[Record]) -> None:
+        """Take a picture, which must not be changed afterwards, and its records; None for records without one."""
+        self._board.post(image_bgr, records)
+
+    def _encode(self) -> None:
+        """Draw and encode the newest picture, again and again, while somebody looks."""
+        settings = self._settings
+        while (picture := self._board.picture_to_draw()) is not None:
+            start = time.monotonic()
+            drawn = _fitted(self._draw(picture.image, picture.records), settings.picture_width)
+            jpeg = cv2.imencode(".jpg", drawn, [cv2.IMWRITE_JPEG_QUALITY, settings.jpeg_quality])[1].tobytes()
+            self._board.post_jpeg(picture.number, jpeg)
+            time.sleep(max(1.0 / settings.pictures_per_s - (time.monotonic() - start), 0.0))
+
+
+def _fitted(image: Image, width: int) -> Image:
+    if image.shape[1] <= width:
+        return image
+    height = max(round(image.shape[0] * width / image.shape[1]), 1)
+    return cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA)  # type: ignore[return-value]

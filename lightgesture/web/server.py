@@ -1,0 +1,208 @@
+"""The HTTP server: a page, its pictures as multipart JPEG, its updates as server-sent events; it only ever reads.
+
+Every browser has a thread of its own, and there is a bound to everything that one may ask for.
+"""
+
+import json
+import socket
+import socketserver
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from typing import Any, cast
+from urllib.parse import urlsplit
+
+from lightgesture.web.board import Board, Update
+from lightgesture.web.hosts import is_known, known_names
+from lightgesture.web.settings import WebSettings
+
+PAGES = {
+    "/": ("page.html", "text/html; charset=utf-8"),
+    "/page.css": ("page.css", "text/css; charset=utf-8"),
+    "/page.js": ("page.js", "text/javascript; charset=utf-8"),
+    "/icon.svg": ("icon.svg", "image/svg+xml"),
+}
+"""Path to the file in `static` and its type."""
+
+HEADERS = {
+    "Content-Security-Policy": "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+"""Of every answer: nothing but what this server gives is loaded, and no other site may show it."""
+
+BOUNDARY = "lightgesture"
+_BUSY = b"HTTP/1.0 503 Service Unavailable\r\nRetry-After: 5\r\nContent-Length: 0\r\n\r\n"
+
+
+class WebServer(ThreadingHTTPServer):
+    """Serves a board. Raises OSError where the port or the address cannot be had."""
+
+    daemon_threads = True
+
+    def __init__(self, host: str, port: int, board: Board, settings: WebSettings) -> None:
+        self.board, self.settings = board, settings
+        self.names = known_names(host)
+        self.viewers = threading.BoundedSemaphore(settings.viewers)
+        self.listeners = threading.BoundedSemaphore(settings.listeners)
+        self._connections = threading.BoundedSemaphore(settings.connections)
+        folder = files("lightgesture.web") / "static"
+        self.pages = {path: ((folder / name).read_bytes(), kind) for path, (name, kind) in PAGES.items()}
+        self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
+        super().__init__((host, port), _Handler)
+
+    def server_bind(self) -> None:
+        """Bind without asking for the machine's full name, which takes long where there is no network."""
+        socketserver.TCPServer.server_bind(self)
+        self.server_name, self.server_port = self.server_address[0], self.server_address[1]  # type: ignore[assignment]
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Hand a connection to a thread, or refuse it where there are too many."""
+        if not self._connections.acquire(blocking=False):
+            with suppress(OSError):
+                request.setblocking(False)
+                request.send(_BUSY)
+            self.shutdown_request(request)
+            return
+        super().process_request(request, client_address)
+
+    def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Serve one connection in its thread."""
+        try:
+            super().process_request_thread(request, client_address)
+        finally:
+            self._connections.release()
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Say nothing of a browser that went away in the middle of a word."""
+
+
+class _Handler(BaseHTTPRequestHandler):
+    server_version, sys_version = "lightgesture", ""
+
+    @property
+    def _web(self) -> WebServer:
+        return cast(WebServer, self.server)
+
+    def setup(self) -> None:
+        settings = self._web.settings
+        self.request.settimeout(settings.client_timeout_s)
+        self.request.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, settings.send_buffer)
+        super().setup()
+
+    def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - the base class's name
+        """Nothing on standard error, which is for the decoder."""
+
+    def do_GET(self) -> None:
+        if not is_known(self.headers.get("Host"), self._web.names):
+            self._refuse(
+                HTTPStatus.MISDIRECTED_REQUEST, "call this server by its address, localhost or its name"
+            )
+            return
+        path = urlsplit(self.path).path
+        if path in self._web.pages:
+            self._send(*self._web.pages[path])
+        elif path == "/state.json":
+            update = self._web.board.update(-1, 0, 0)
+            content = {} if update is None else {**update.state, "entries": update.entries}
+            self._send(json.dumps(content).encode(), "application/json")
+        elif path == "/stream.mjpg":
+            self._stream()
+        elif path == "/events":
+            self._events()
+        else:
+            self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here; the page is at /")
+
+    def _stream(self) -> None:
+        board, settings = self._web.board, self._web.settings
+        with self._place(self._web.viewers) as is_free:
+            if not is_free:
+                return
+            self._begin(f"multipart/x-mixed-replace; boundary={BOUNDARY}")
+            self.wfile.write(f"--{BOUNDARY}\r\n".encode())
+            number, jpeg = 0, b""
+            with board.viewing():
+                while not board.is_closed:
+                    # Where no new one comes, the last is sent again: some browsers show a picture only when the next
+                    # begins, and one that has gone is noticed.
+                    number, jpeg = board.jpeg(number, settings.beat_s) or (number, jpeg)
+                    if jpeg and not board.is_closed:
+                        self.wfile.write(to_part(jpeg))
+
+    def _events(self) -> None:
+        board, settings = self._web.board, self._web.settings
+        with self._place(self._web.listeners) as is_free:
+            if not is_free:
+                return
+            self._begin("text/event-stream")
+            version, entry = -1, self._last_entry()
+            while not board.is_closed:
+                update = board.update(version, entry, settings.beat_s)
+                if update is None:
+                    self.wfile.write(b": still here\n\n")
+                    continue
+                self.wfile.write(to_events(update, board.run))
+                version = update.version
+                entry = update.entries[-1]["number"] if update.entries else entry
+                time.sleep(1.0 / settings.updates_per_s)
+
+    def _last_entry(self) -> int:
+        """Number of the last entry that a browser had before it lost the connection; 0 in another run."""
+        run, _, number = self.headers.get("Last-Event-ID", "").partition("-")
+        return int(number) if run == self._web.board.run and number.isascii() and number.isdigit() else 0
+
+    @contextmanager
+    def _place(self, places: threading.BoundedSemaphore) -> Iterator[bool]:
+        """A place among those who stay; where none is free, the browser is told so and it gives False."""
+        is_free = places.acquire(blocking=False)
+        try:
+            if not is_free:
+                self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, "too many look already; close another page")
+            yield is_free
+        finally:
+            if is_free:
+                places.release()
+
+    def _begin(self, kind: str, status: HTTPStatus = HTTPStatus.OK, length: int | None = None) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
+        if length is not None:
+            self.send_header("Content-Length", str(length))
+        if status == HTTPStatus.SERVICE_UNAVAILABLE:
+            self.send_header("Retry-After", "5")
+        self.end_headers()
+
+    def _send(self, content: bytes, kind: str, status: HTTPStatus = HTTPStatus.OK) -> None:
+        self._begin(kind, status, len(content))
+        self.wfile.write(content)
+
+    def _refuse(self, status: HTTPStatus, text: str) -> None:
+        self._send(f"{text}\n".encode(), "text/plain; charset=utf-8", status)
+
+
+def to_part(jpeg: bytes) -> bytes:
+    """A picture as a part of the stream; the next boundary follows at once, for it is the end of the part."""
+    head = f"Content-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n"
+    return head.encode() + jpeg + f"\r\n--{BOUNDARY}\r\n".encode()
+
+
+def to_events(update: Update, run: str) -> bytes:
+    """An update as server-sent events, the state first, for it tells of a new run.
+
+    JSON has no line feed of its own, so hostile text cannot end an event.
+    """
+    parts = [f"event: state\ndata: {json.dumps(update.state)}\n\n"]
+    parts += [
+        f"event: entry\nid: {run}-{entry['number']}\ndata: {json.dumps(entry)}\n\n"
+        for entry in update.entries
+    ]
+    return "".join(parts).encode("ascii")

@@ -43,9 +43,9 @@ def run_live(
     report = _make_report()
     clock = _make_clock()
     mailbox = Mailbox()
-    # Listeners draw the hands, so that the pipeline tells of them whether the sinks get them or not.
-    pipeline = open_pipeline(settings.model_copy(update={"frames": True}), source.name, debug)
+    pipeline = open_pipeline(_for_pipeline(settings, live_settings), source.name, debug)
     with ExitStack() as stack:
+        listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
         outboxes = [stack.enter_context(_sending(sink, report)) for sink in sinks]
         stack.enter_context(_reading(source, mailbox, clock, report, live_settings))
@@ -65,6 +65,27 @@ def run_live(
     if not settings.quiet:
         say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
     return _status(loop, outboxes, stopping)
+
+
+def _for_pipeline(settings: DecodeSettings, live_settings: LiveSettings) -> DecodeSettings:
+    """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
+    a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
+    changes: dict[str, object] = {"frames": True}
+    if settings.hold is None and settings.hold_seconds is None and settings.grammar is None:
+        changes["hold_seconds"] = live_settings.hold_s
+    return settings.model_copy(update=changes)
+
+
+def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list[Listener]:
+    """The page, where the user wants one, served until the stack ends."""
+    if settings.web is None:
+        return []
+    from lightgesture.web import WebListener
+
+    page = stack.enter_context(WebListener(settings.web, settings.web_host))
+    if not settings.quiet:
+        report(f"the page is at {page.address}")
+    return [page]
 
 
 def _status(loop: LiveLoop, outboxes: Sequence[Outbox], stopping: Stopping) -> ExitStatus:

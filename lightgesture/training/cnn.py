@@ -122,7 +122,7 @@ def fit(
     settings, seed, patch = net_settings(training), training.seed, training.pool.patch
     samples = HandSamples(pool, chosen, classes, training.pool.margin)
     length = contour_length(training.pool.contour) if training.contours else 0
-    outlines = pool.contours[:, :length].astype(np.float32)
+    outlines = pool.contours[chosen, :length].astype(np.float32)
     scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))
     teacher = None
     if training.teacher_steps:

@@ -93,7 +93,7 @@ def train_hand_net(
         far = functional.kl_div(torch.log_softmax(scores / soft, dim=1), wanted, reduction="batchmean")
         return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
 
-    loop = LoopSettings(settings.steps, settings.rate, warm_up=min(300, settings.steps // 4))
+    loop = LoopSettings(settings.steps, settings.rate, warm_up=max(1, min(300, settings.steps // 4)))
     return train_net(net, batch, loss, loop, seed, checkpoint, progress)
 
 

@@ -11,9 +11,9 @@ import cv2
 
 from lightgesture.errors import UsageError
 from lightgesture.features.types import Image
+from lightgesture.overlay import Overlay
 from lightgesture.records import Record
 from lightgesture.web.board import Board
-from lightgesture.web.drawing import HandDrawer
 from lightgesture.web.server import WebServer
 from lightgesture.web.settings import WebSettings
 
@@ -36,7 +36,7 @@ class WebListener:
         self, port: int, host: str = LOOPBACK, draw: Draw | None = None, settings: WebSettings | None = None
     ) -> None:
         self._port, self._host = port, host
-        self._draw = draw or HandDrawer()
+        self._draw = draw or Overlay().draw
         self._settings = settings or WebSettings()
         self._board = Board(self._settings.entries)
         self._server: WebServer | None = None

@@ -1,5 +1,6 @@
 """What `live` does: the parts put together, run until the end, and taken apart in order."""
 
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -97,7 +98,9 @@ def _status(loop: LiveLoop, outboxes: Sequence[Outbox], stopping: Stopping) -> E
 
 
 def _make_printer(settings: DecodeSettings, name: str) -> Sink:
-    return PrinterSink((JsonPrinter if settings.as_json else TextPrinter)(print_unbuffered, name))
+    if settings.as_json:
+        return PrinterSink(JsonPrinter(print_unbuffered, sys.stdout.encoding or "utf-8"))
+    return PrinterSink(TextPrinter(print_unbuffered, name))
 
 
 def _make_clock() -> Callable[[], float]:

@@ -168,6 +168,11 @@ class TestWhichRule:
     def test_options_go_before_the_file(self, rule, hold, hold_seconds, need):
         assert make_dwell(DwellSettings(rule=rule), hold, hold_seconds).need == need
 
+    def test_release_is_a_share_of_the_hold(self):
+        settings = DwellSettings(release=0.3)
+        assert make_dwell(settings, 20, None).release == 6
+        assert make_dwell(settings, None, 0.5).release == pytest.approx(0.15, abs=0.0011)
+
     def test_seconds_keep_the_rule_of_evidence(self):
         frames = [A] * 5 + [B] + [A] * 5
 

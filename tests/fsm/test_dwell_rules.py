@@ -95,6 +95,14 @@ def test_release_takes_its_time_at_any_rate(rate):
         assert len(held) == (2 if (absent - 1) / rate >= 0.0999 else 1), absent
 
 
+@pytest.mark.parametrize(("absent", "holds"), [(3, 1), (4, 2)])
+def test_release_begins_with_the_first_absent_frame_after_the_hold(absent, holds):
+    dwell = timed()
+    frames = [A] * 16 + [None] * absent + [A] * 16
+    held = [frame for frame, pair in enumerate(frames) if dwell.process(pair, 1.0, frame, 0.0, frame / 30)]
+    assert len(held) == holds
+
+
 def test_an_unbroken_run_is_broken_by_one_frame():
     dwell = timed()
     frames = [A] * 14 + [B] + [A] * 14 + [None] + [A] * 16

@@ -42,7 +42,9 @@ class Decoder:
     ) -> None:
         self._grammar = grammar
         self._dwell = make_dwell(grammar.dwell, hold, hold_seconds)
-        self._unread = UnreadSigning(grammar.dwell.unread * self._dwell.need, self._dwell.release)
+        self._unread = UnreadSigning(
+            grammar.dwell.unread * self._dwell.need, self._dwell.release, grammar.dwell.passage_s
+        )
         self._timeline = Timeline()
         self._reporter = Reporter(source)
         self._sentence: Sentence | None = None
@@ -91,6 +93,7 @@ class Decoder:
         reporter.frame = reporter.frame + 1 if frame is None else frame
         if math.isfinite(time_s):
             reporter.time_s = time_s
+        before_s = self._timeline.now_s
         now_s = self._timeline.advance(reporter.time_s)
         timeout_s = self._grammar.dwell.timeout_s
         if self._sentence is not None and now_s - self._sentence.touched_s >= timeout_s:
@@ -105,7 +108,7 @@ class Decoder:
         elif self._sentence is not None and (pair is None or pair != dwell.spent):
             is_left = left is not None if left_seen is None else left_seen
             is_right = right is not None if right_seen is None else right_seen
-            if (is_left or is_right) and self._unread.process(pair, dwell.step):
+            if (is_left or is_right) and self._unread.process(pair, dwell.step, now_s - before_s):
                 self._miss()
         is_worth_showing = dwell.pair is not None or reporter.is_growth_shown
         if is_worth_showing and now_s - reporter.shown_s >= DISPLAY_INTERVAL_S:

@@ -21,6 +21,9 @@ MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 MAX_UNREAD = 100.0
 """Longest unread signing, holds: no time-out is later, so that this much turns the rule off."""
 
+MAX_PASSAGE_S = 10.0
+"""Longest passage from sign to sign, seconds."""
+
 MAX_TIMEOUT_S = 3600.0
 """Longest time-out, seconds."""
 
@@ -164,6 +167,7 @@ class DwellTable(_Table):
     )
     release: float = Field(default=_DWELL.release, gt=0, le=1, allow_inf_nan=False)
     unread: float = Field(default=_DWELL.unread, gt=0, le=MAX_UNREAD, allow_inf_nan=False)
+    passage_s: float = Field(default=_DWELL.passage_s, ge=0, le=MAX_PASSAGE_S, allow_inf_nan=False)
     timeout_s: float = Field(default=_DWELL.timeout_s, gt=0, le=MAX_TIMEOUT_S, allow_inf_nan=False)
 
 

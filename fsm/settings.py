@@ -33,7 +33,8 @@ class DwellSettings:
     false words and slower signing. release: fraction of the hold, 0 to 1 and at least one frame, that a pair must be
     absent before it counts again; less lets a flicker double a word. unread: how long, as a multiple of the hold, hands
     may be seen between two words without a word: more loses a sentence less often, and a sign of it more often. It must
-    be less than a hold and two passages from sign to sign, and more than one passage.
+    be less than a hold and two passages from sign to sign, and more than one passage. passage_s: seconds that they
+    may be seen in any case, 0 to 10: the longest passage, for holds that are shorter.
     timeout_s: seconds without an accepted word that drop an open sentence.
     """
 
@@ -42,6 +43,7 @@ class DwellSettings:
     hold_seconds: float = 0.5
     release: float = 0.2
     unread: float = 1.2
+    passage_s: float = 0.5
     timeout_s: float = 20.0
 
 

@@ -31,10 +31,9 @@ def check(path: Path) -> tuple[list[str], bool]:
 
 def show(grammar: Grammar) -> list[str]:
     """The signs, the table and the settings of a grammar."""
-    lines = ["Signs while idle (left hand,right hand)", *_signs(grammar.idle_words, grammar.sentence_words)]
-    lines += ["", "Signs inside a sentence", *_signs(grammar.sentence_words, {})]
-    if grammar.menu_words:
-        lines += ["", "Signs in the menu", *_signs(grammar.menu_words, {})]
+    lines = ["Signs (left hand,right hand)", *_signs(grammar.sentence_words, {})]
+    lines += ["", "Signs that differ while idle", *_signs(grammar.idle_words, grammar.sentence_words)]
+    lines += ["", "Signs in the menu", *_signs(grammar.menu_words, {})]
     lines += ["", "Table: state, word, next state", *_table(grammar)]
     lines += ["", "Programs", *_entries(grammar.programs)]
     lines += ["", "Parameters"]
@@ -48,7 +47,13 @@ def show(grammar: Grammar) -> list[str]:
         "Settings",
         *_entries({name: value for name, value in settings.items() if value is not None}),
     ]
-    return lines
+    return [line if is_filled else f"{line}: none" for line, is_filled in _headed(lines)]
+
+
+def _headed(lines: Sequence[str]) -> Iterator[tuple[str, bool]]:
+    """Each line, and whether it is no heading that nothing follows."""
+    for line, following in zip(lines, [*lines[1:], ""], strict=True):
+        yield line, not line or line.startswith(" ") or following.startswith(" ")
 
 
 def explain(grammar: Grammar, sequence: str) -> list[str]:

@@ -97,6 +97,12 @@ class TestShow:
             ["confirm_unknown", "False"],
         ]
 
+    def test_empty_parts_are_said_to_be_empty(self, run, write):
+        out = run("grammar", "show", write(('3 = "circle the diver"\n', ""))).out
+        assert [line for line in out if line.endswith(": none")] == ["Signs in the menu: none"]
+        path = write(("[idle_pairs]\n", '[idle_pairs]\n"1,1" = "STOP"\n'))
+        assert "  STOP  ok,0  1,1  0,0" in run("grammar", "show", path).out
+
     def test_words_in_short(self):
         assert merge_words(["GO", "5", "4", "PARAM 1", "PARAM 2", "AND"]) == ["AND", "GO", "PARAM n", "4..5"]
         assert merge_words(["1", "3"]) == ["1", "3"]

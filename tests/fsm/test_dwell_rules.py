@@ -95,6 +95,14 @@ def test_release_takes_its_time_at_any_rate(rate):
         assert len(held) == (2 if (absent - 1) / rate >= 0.0999 else 1), absent
 
 
+@pytest.mark.parametrize(("absent", "holds"), [(3, 1), (4, 2)])
+def test_release_begins_with_the_first_absent_frame_after_the_hold(absent, holds):
+    dwell = timed()
+    frames = [A] * 16 + [None] * absent + [A] * 16
+    held = [frame for frame, pair in enumerate(frames) if dwell.process(pair, 1.0, frame, 0.0, frame / 30)]
+    assert len(held) == holds
+
+
 def test_an_unbroken_run_is_broken_by_one_frame():
     dwell = timed()
     frames = [A] * 14 + [B] + [A] * 14 + [None] + [A] * 16
@@ -167,6 +175,11 @@ class TestWhichRule:
     )
     def test_options_go_before_the_file(self, rule, hold, hold_seconds, need):
         assert make_dwell(DwellSettings(rule=rule), hold, hold_seconds).need == need
+
+    def test_release_is_a_share_of_the_hold(self):
+        settings = DwellSettings(release=0.3)
+        assert make_dwell(settings, 20, None).release == 6
+        assert make_dwell(settings, None, 0.5).release == pytest.approx(0.15, abs=0.0011)
 
     def test_seconds_keep_the_rule_of_evidence(self):
         frames = [A] * 5 + [B] + [A] * 5

@@ -81,6 +81,16 @@ def test_the_rule_holds_in_seconds_too(grammar, words_to_pairs, pick, rate):
         assert pick(decode(lost, "unread"), "rejected", field="reason") == ["unread_sign"]
 
 
+@pytest.mark.parametrize(("hold", "rate"), [(3, 30), (5, 30), (8, 30), (15, 60), (4, 10), (15, 25)])
+def test_short_holds_leave_the_time_to_go_from_sign_to_sign(grammar, words_to_pairs, pick, hold, rate):
+    held, passage = max(round(0.7 * rate), hold), round(0.4 * rate)
+    signed = sign(Decoder(grammar, hold=hold), words_to_pairs, SIGNED, (), "read", held, passage, rate)
+    assert pick(signed, "instruction", field="text") == ["STOP HOVER 35 GO"]
+    for how, lost in product(("unread", "one hand"), ((2,), (3, 4), (2, 3, 4))):
+        events = sign(Decoder(grammar, hold=hold), words_to_pairs, SIGNED, lost, how, held, passage, rate)
+        assert pick(events, "rejected", field="reason") == ["unread_sign"]
+
+
 def test_hands_out_of_view_are_no_sign(grammar, words_to_pairs, pick):
     events = sign(
         Decoder(grammar), words_to_pairs, "STOP HOVER 3 GO", (2,), "out of view", held=60, passage=5
@@ -195,19 +205,29 @@ class TestUnreadSigning:
         ],
     )
     def test_when_a_sign_was_missed(self, frames, expected):
-        signing = UnreadSigning(5, 2)
+        for passage_s, step_s in ((0.0, 0.1), (9.0, 0.0), (0.5, 0.1)):
+            assert self.first_missed(UnreadSigning(5, 2, passage_s), frames, step_s) == expected
+
+    def first_missed(self, signing, frames, step_s):
         missed = [
             index
             for index, shown in enumerate(frames)
-            if shown != "," and signing.process(None if shown == "." else (shown, shown), 1.0)
+            if shown != "," and signing.process(None if shown == "." else (shown, shown), 1.0, step_s)
         ]
-        assert (missed[0] if missed else None) == expected
+        return missed[0] if missed else None
+
+    @pytest.mark.parametrize(
+        ("frames", "expected"),
+        [("." * 20, 8), ("aaaaaaaaaaaa..", 13), ("aaaa..........", 8), ("aaa.aaa.aaa....", 12)],
+    )
+    def test_a_passage_may_last_its_time(self, frames, expected):
+        assert self.first_missed(UnreadSigning(5, 2, 0.8), frames, 0.0999) == expected
 
     def test_a_word_takes_all_away_and_what_was_told_only_itself(self):
-        signing = UnreadSigning(5, 2)
+        signing = UnreadSigning(5, 2, 0.0)
         for take_away, left in ((signing.reset, 6), (signing.pass_over, 3)):
             signing.reset()
             for pair in (None, None, None, ("a", "a"), ("a", "a"), ("a", "a")):
-                assert not signing.process(pair, 1.0)
+                assert not signing.process(pair, 1.0, 0.1)
             take_away()
-            assert [signing.process(None, 1.0) for _ in range(left)] == [False] * (left - 1) + [True]
+            assert [signing.process(None, 1.0, 0.1) for _ in range(left)] == [False] * (left - 1) + [True]

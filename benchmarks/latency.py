@@ -164,7 +164,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         description="Milliseconds per stage on this machine.",
     )
     parser.add_argument("--data", metavar="DIR", help="folder of labelled pictures (default: ../shared/data)")
-    parser.add_argument("--model", default="svm", metavar="svm|PATH", help="classifier (default: svm)")
+    parser.add_argument("--model", default="cnn", metavar="cnn|svm|PATH", help="classifier (default: cnn)")
     parser.add_argument("--out", metavar="FILE.json", help="write the figures and the machine here")
     parser.add_argument(
         "--rounds", type=_count, default=LatencySettings().rounds, metavar="N", help="passes over a clip"

@@ -12,7 +12,7 @@ from typing import Any
 
 FIRST = "first record"
 ONLY_FIRST = "--only-first"
-CLASSIFIERS = ("svm", "cnn")
+CLASSIFIERS = ("cnn", "svm")
 """Names that `--model` knows; a model file has any other."""
 VIDEO_BACKENDS = ("FFMPEG", "GSTREAMER", "V4L2")
 """What OpenCV reads with: video files and network streams, pipelines, cameras of Linux."""

@@ -21,6 +21,7 @@ from lightgesture.features.tracks import TrackStage
 from lightgesture.features.types import Candidates, Image
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.models import load_classifier
+from lightgesture.models.loading import DEFAULT
 from lightgesture.reading import ReadingStage, Sighting, is_crowded
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
 from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
@@ -70,7 +71,7 @@ class StageClock:
 class Pipeline:
     """Decodes one stream of frames; make another for another stream, or take `for_stream`.
 
-    model: "svm", "cnn" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
+    model: "cnn", "svm" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no net),
     see `features.selector`. profile: path of a colour profile of the diver's hands, which replaces the map of
     skin colours; None for that map. hold: consecutive frames that a sign is held; hold_seconds: seconds instead; both
     None for the grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
@@ -83,7 +84,7 @@ class Pipeline:
     def __init__(
         self,
         *,
-        model: str | os.PathLike[str] = "svm",
+        model: str | os.PathLike[str] = DEFAULT,
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         hold: int | None = None,

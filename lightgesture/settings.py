@@ -53,7 +53,7 @@ class DecodeSettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    model: str = _option("svm", "classifier: svm, cnn or a model file", "svm|cnn|PATH", min_length=1)
+    model: str = _option("cnn", "classifier: cnn, svm or a model file", "cnn|svm|PATH", min_length=1)
     selector: Literal["learned", "classical"] = _option(
         "learned", "how hands are found: learned (small nets) or classical (no net)", "learned|classical"
     )
@@ -177,7 +177,7 @@ class DecodeSettings(BaseModel):
 
 _PATHS = ("grammar", "profile", "out", "debug_dir", "model", "mavlink_map")
 _HOLDS = ("hold", "hold_seconds")
-_BUILT_IN_MODELS = ("svm", "cnn")
+_BUILT_IN_MODELS = ("cnn", "svm")
 
 
 def add_options(parser: argparse.ArgumentParser, command: str) -> None:

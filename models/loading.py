@@ -14,7 +14,7 @@ from lightgesture.models.archive import read_archive
 DATA: Final = Path(__file__).resolve().parent / "data"
 SHIPPED: Final = {name: DATA / f"{name}.npz" for name in ("cnn", "svm")}
 """The models that come with the package; their cards lie beside them."""
-DEFAULT: Final = "svm"
+DEFAULT: Final = "cnn"
 
 
 class Classifier(Protocol):

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 HANDS, REGIONS, SUITE = "hands", "regions", "suite"
 TARGETS = (HANDS, REGIONS, SUITE)
-DEFAULT_MODEL = "svm"
+DEFAULT_MODEL = "cnn"
 Item = TypeVar("Item")
 
 

@@ -33,8 +33,8 @@ class FakePipeline:
     interrupt_at = None
 
     def __init__(self, *, model, source, frames, debug, **options):
-        if model == "cnn":
-            raise ModelError("the cnn model is not built yet; use --model svm")
+        if model == "broken.npz":
+            raise ModelError("broken.npz: is damaged (no scores); restore it or train it again")
         self.options = {"model": model, **options}
         self.source, self.frames, self.debug = source, frames, debug
         self.seen = []

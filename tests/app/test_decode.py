@@ -60,7 +60,7 @@ def test_plain_words(run, make_video):
 def test_options_reach_the_pipeline(run, make_folder, fake):
     run("decode", make_folder("frames", 2), "--hold", 3, "--mirrored", "--grammar", "my.toml", "--fps", 4)
     assert fake.made[-1].options == {
-        "model": "svm",
+        "model": "cnn",
         "selector": "learned",
         "profile": None,
         "hold": 3,
@@ -73,7 +73,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert fake.made[-1].options["hold_seconds"] == 0.4
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {
-        "model": "svm",
+        "model": "cnn",
         "selector": "learned",
         "profile": None,
         "hold": None,
@@ -207,11 +207,11 @@ def test_interrupted(run, make_video, tmp_path, fake):
     assert names(out) == of("a")
 
 
-def test_model_that_is_not_built(run, make_video):
-    result = run("decode", make_video(), "--model", "cnn")
+def test_model_that_is_damaged(run, make_video):
+    result = run("decode", make_video(), "--model", "broken.npz")
     assert result.status == ExitStatus.USAGE
     assert result.out == []
-    assert result.err == ["lightgesture: the cnn model is not built yet; use --model svm"]
+    assert result.err == ["lightgesture: broken.npz: is damaged (no scores); restore it or train it again"]
 
 
 def test_out_that_is_a_file(run, make_video, tmp_path):

@@ -26,10 +26,11 @@ def test_bad_model_file(run, make_picture, make_video, tmp_path, command, conten
     assert result.err[0].startswith(f"lightgesture: {model}: ")
 
 
-def test_model_that_is_not_built(run, make_video, tmp_path):
-    result = run("decode", make_video(), "--model", "cnn", "--out", tmp_path / "out")
+def test_a_model_that_is_missing_leaves_no_results(run, make_video, tmp_path):
+    result = run("decode", make_video(), "--model", tmp_path / "no.npz", "--out", tmp_path / "out")
     assert (result.status, result.out) == (ExitStatus.USAGE, [])
-    assert result.err == ["lightgesture: the cnn model is not built yet; use --model svm"]
+    assert len(result.err) == 1
+    assert result.err[0].startswith(f"lightgesture: {tmp_path / 'no.npz'}: cannot be read")
     assert [path.name for path in (tmp_path / "out").iterdir()] == [".lightgesture.lock"]
 
 

@@ -78,7 +78,7 @@ def test_a_pipeline_for_another_stream_loads_nothing_and_remembers_nothing(monke
     assert other.finish()[-1].frames == 0
     assert other.process(frames[0].image, 0.0)[0].source == "other"
     assert first.finish()[-1].frames == again.finish()[-1].frames == 24
-    assert loaded == ["svm"]
+    assert loaded == ["cnn"]
 
 
 @pytest.mark.parametrize("frames", [True, False])

@@ -27,7 +27,7 @@ def config(tmp_path):
 def test_defaults():
     settings = load()
     assert settings == DecodeSettings()
-    assert (settings.model, settings.hold, settings.fps, settings.as_json) == ("svm", None, 30.0, False)
+    assert (settings.model, settings.hold, settings.fps, settings.as_json) == ("cnn", None, 30.0, False)
 
 
 def test_command_line_goes_before_the_file(config):

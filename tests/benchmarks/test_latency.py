@@ -25,7 +25,7 @@ class FakePipeline:
     """Two stages a frame, timed by the real clock."""
 
     def __init__(self, model):
-        assert model == "svm"
+        assert model == "cnn"
         self.restart_clock()
         self.threads = set()
 
@@ -79,7 +79,7 @@ def test_warm_up_is_run_but_not_counted():
 
 def test_a_row_per_clip_threads_and_stage(fake_pipelines):
     frames = [np.zeros((480, 640, 3), np.uint8)] * 5
-    rows = measure({"clip": frames}, "svm", FakeChain, QUICK)
+    rows = measure({"clip": frames}, "cnn", FakeChain, QUICK)
     stages = ["colour", "tracks", FRAME, SINGLE, PAPER]
     assert [(row["threads"], row["stage"]) for row in rows] == [
         (n, stage) for n in (1, 2) for stage in stages
@@ -90,7 +90,7 @@ def test_a_row_per_clip_threads_and_stage(fake_pipelines):
 
 
 def test_time_goes_on_from_round_to_round(fake_pipelines):
-    measure({"clip": [np.zeros((480, 640, 3), np.uint8)] * 2}, "svm", None, QUICK)
+    measure({"clip": [np.zeros((480, 640, 3), np.uint8)] * 2}, "cnn", None, QUICK)
     assert fake_pipelines[0].last == pytest.approx(6 / 30)
 
 

@@ -94,7 +94,7 @@ def test_standard_input_without_a_picture(run, fake, monkeypatch):
         (["-", "--mavlink", "nowhere"], "--mavlink nowhere: is no link"),
         (["-", "--hook", "no-such-program"], "--hook no-such-program: no such command"),
         (["-", "--mavlink-map", "a.toml"], "--mavlink-map: is of no use without --mavlink"),
-        (["-", "--model", "cnn"], "the cnn model is not built yet"),
+        (["-", "--model", "broken.npz"], "broken.npz: is damaged"),
         (["v4l2src ! appsink"], "v4l2src ! appsink: this OpenCV has no GStreamer"),
     ],
 )

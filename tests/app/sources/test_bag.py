@@ -142,7 +142,7 @@ def test_a_folder_of_frames_with_metadata_of_its_own_is_no_bag(make_folder):
 def test_decode_takes_a_bag(make_bag, run, fake):
     result = run("decode", make_bag("ros1", left=raw, right=raw), "--topic", "/right", "--json")
     assert result.status == ExitStatus.OK
-    assert [seen[:2] for seen in fake.made[0].seen] == [(0, 0.0), (1, 0.1), (2, 0.2), (3, 0.3)]
+    assert [seen[:2] for seen in fake.made[-1].seen] == [(0, 0.0), (1, 0.1), (2, 0.2), (3, 0.3)]
 
 
 def test_without_the_extra(make_bag, monkeypatch):

@@ -31,5 +31,5 @@ class SelectorSettings:
 
 CLASSICAL = SelectorSettings()
 """For scores of the classical choice."""
-LEARNED = SelectorSettings(pair_score=0.3, single_score=0.45)
+LEARNED = SelectorSettings(pair_score=0.3, single_score=0.52)
 """For scores of locator and refiner."""

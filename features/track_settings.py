@@ -61,6 +61,8 @@ class TrackSettings:
         middle it is the selector's alone_confidence.
 
     Predictions in place of a search:
+    still_iou: overlap of the predicted box with the one found in it, from which the hand stands still enough for a look
+        at the box to do, 0 to 1. Larger searches oftener, where hands move, and its boxes are truer.
     whole_s, whole_alone_s: seconds after the last search of a whole frame in which a look at the predicted boxes
         suffices, with two tracks and with one; larger is cheaper and finds a better pair or a second hand later.
     """
@@ -98,5 +100,6 @@ class TrackSettings:
     stalled_step_s: float = 1 / 30
     settle_s: float = 0.5
     axis_certainty: float = 0.9
+    still_iou: float = 0.6
     whole_s: float = 0.5
     whole_alone_s: float = 0.1

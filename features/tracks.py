@@ -12,6 +12,7 @@ import math
 from lightgesture.features import births, matching, track_state
 from lightgesture.features.births import PairKey
 from lightgesture.features.evidence import PairEvidence, observe
+from lightgesture.features.geometry import box_iou
 from lightgesture.features.matching import Found, Observed
 from lightgesture.features.motion import box_of, load_filter
 from lightgesture.features.selector_settings import SelectorSettings
@@ -92,13 +93,21 @@ class TrackStage:
         return tuple(box_of(motion, picture) for motion in moved)
 
     def explains(self, candidates: Candidates, time_s: float) -> bool:
-        """Whether each confirmed track would find its region among these at `time_s`; nothing changes."""
+        """Whether each confirmed track would find its region among these at `time_s`, about where it was predicted;
+        nothing changes. A hand that moved on was seen through a window beside it, and its box cannot be trusted."""
         step = self._step(time_s)
         if candidates.source_size != self._size or step > self.settings.longest_step_s:
             return False
         confirmed = [track for track in self._tracks if track.life == "confirmed"]
-        found = self._match(self._predicted(confirmed, step), self._look_at(candidates), step)
-        return len(found) == len(confirmed)
+        predicted, observed = self._predicted(confirmed, step), self._look_at(candidates)
+        found = self._match(predicted, observed, step)
+        if len(found) < len(confirmed):
+            return False
+        pairs = [
+            (box_of(predicted[place].motion, self._size), observed.regions[item.region].box)
+            for place, item in found.items()
+        ]
+        return all(box_iou(one, other) >= self.settings.still_iou for one, other in pairs)
 
     def _step(self, time_s: float) -> float:
         """Seconds from the last frame to this one, above 0; 0 for the first frame."""

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.geometry import best_distinct, keep_distinct, pairwise_iou
+from lightgesture.features.geometry import best_distinct, box_iou, keep_distinct, pairwise_iou
 from lightgesture.features.selector_settings import SelectorSettings
 
 
@@ -54,3 +54,12 @@ def test_no_more_are_kept_than_wanted(most, expected):
 def test_of_no_boxes_none_are_kept():
     nothing = np.zeros((0, 4), np.float32)
     assert best_distinct(nothing, np.zeros(0, np.float32), SelectorSettings()) == []
+
+
+@given(
+    boxes=st.lists(st.tuples(*[st.integers(0, 40)] * 2, *[st.integers(1, 40)] * 2), min_size=2, max_size=2)
+)
+def test_the_overlap_of_two_boxes_is_that_of_arrays(boxes):
+    one, other = boxes
+    expected = pairwise_iou(np.array([one]), np.array([other]))[0, 0]
+    assert box_iou(one, other) == pytest.approx(expected)

@@ -83,3 +83,10 @@ def test_regions_explain_the_tracks_only_where_every_hand_finds_its_own(hands, r
     assert not stage.explains(frame([]), now)
     assert not stage.explains(frame([region(160, 140), region(460, 140)], 0.8, size=(320, 240)), now)
     assert not stage.explains(hands(), now + 5.0)
+
+
+def test_a_hand_that_moved_on_is_searched_for(hands):
+    stage, now = _followed(hands)
+    assert stage.explains(hands((170, 140), (460, 140)), now)
+    # Inside the gate, so that it is the track's own; but its box was seen through a window beside it.
+    assert not stage.explains(hands((190, 140), (460, 140)), now)

@@ -25,6 +25,7 @@ from lightgesture.benchmarks.finding_suite import FindingAnswer
 from lightgesture.benchmarks.regions import Run, make_answer
 from lightgesture.benchmarks.scorer import Reading, score_frame
 from lightgesture.datasets import Label, Sample
+from lightgesture.decoding import SAMPLE
 from lightgesture.features.classical import ClassicalSelector
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.learned import Places
@@ -33,6 +34,7 @@ from lightgesture.features.selector import RegionStage
 from lightgesture.features.selector_file import load_classical, load_learned
 from lightgesture.features.selector_settings import CLASSICAL
 from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.sources import open_source
 
 
 @pytest.fixture(name="scene", scope="module")
@@ -51,6 +53,13 @@ def _scene():
 @pytest.fixture(name="colour", scope="module")
 def _colour(scene):
     return ColourStage().process(scene)
+
+
+@pytest.fixture(name="diver", scope="module")
+def _diver():
+    """A frame of the bundled clip."""
+    with open_source(SAMPLE) as source:
+        return ColourStage().process(next(frame.image for frame in source if frame.index == 60))
 
 
 @pytest.fixture(name="parts", scope="module")
@@ -121,30 +130,30 @@ def test_plain_colours_keep_the_cast(scene):
     assert change(PlainColourStage()) > 2 * change(ColourStage())
 
 
-def test_each_net_alone_has_its_own_boxes(colour):
+def test_each_net_alone_has_its_own_boxes(diver):
     parts = load_learned()
     nets = Places(parts.locator, parts.refiner)
-    peaks, refined = nets.find(colour)
+    peaks, refined = nets.find(diver)
     for refines, boxes, scores in ((False, peaks.boxes, peaks.heat), (True, refined.boxes, refined.hand)):
-        best = LearnedSearch(nets, refines)(colour).regions[0]
-        expected = boxes[scores.argmax()] * 4
+        best = LearnedSearch(nets, refines)(diver).regions[0]
+        expected = boxes[scores.argmax()] * np.tile(diver.scale, 2)
         assert best.box == pytest.approx(tuple(expected), abs=1.0)
 
 
-def test_a_changed_stage_changes_what_is_followed_too(colour):
-    predicted = [(120, 150, 110, 160), (380, 150, 110, 160)]
+def test_a_changed_stage_changes_what_is_followed_too(diver):
+    predicted = [region.box for region in RegionStage("learned").process(diver).regions[:2]]
 
     def forget(found):
         return replace(found, regions=found.regions[:1], pairs=found.pairs[:1, :1])
 
-    own = RegionStage("learned").follow(colour, predicted)
+    own = RegionStage("learned").follow(diver, predicted)
     assert own is not None
     changed = ChangedStage("learned", change=forget)
-    assert len(changed.follow(colour, predicted).regions) == min(len(own.regions), 1)
-    assert len(changed.process(colour).regions) == 1
-    assert ChangedStage("learned", follows=False).follow(colour, predicted) is None
+    assert len(changed.follow(diver, predicted).regions) == min(len(own.regions), 1)
+    assert len(changed.process(diver).regions) == 1
+    assert ChangedStage("learned", follows=False).follow(diver, predicted) is None
     nothing = Candidates((), np.zeros((0, 0), np.float32), (640, 480))
-    assert ChangedStage("classical", lambda _: nothing).process(colour) is nothing
+    assert ChangedStage("classical", lambda _: nothing).process(diver) is nothing
 
 
 def test_without_memory_every_frame_is_a_picture(fake_method):

@@ -176,10 +176,10 @@ def test_contact_sheets_show_the_failures(command, tmp_path, capsys):
     out = tmp_path / "sheets"
     command("--out", str(out))
     names = {path.name for path in out.iterdir()}
-    assert {"svm_hover_boxes_given.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
+    assert {"cnn_hover_boxes_given.jpg", "fake_hover_single.jpg", "fake_hover_sequence.jpg"} <= names
     assert "fake_reef_1_single.jpg" not in names
     assert {name for name in names if not name.endswith(".jpg")} == {
-        *("errors_svm.png", "reliability.png", "confusions.png"),
+        *("errors_cnn.png", "reliability.png", "confusions.png"),
         *(
             f"found_{selector}_hover_{mode}.png"
             for selector in ("learned", "classical")

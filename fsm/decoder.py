@@ -50,6 +50,16 @@ class Decoder:
         self._sentence: Sentence | None = None
 
     @property
+    def hold_frames(self) -> int | None:
+        """Frames that make a word; None where a word is a matter of time."""
+        return None if self._dwell.timed else int(self._dwell.need)
+
+    @property
+    def hold_seconds(self) -> float | None:
+        """Seconds, of time or of evidence, that make a word; None where it is a matter of frames."""
+        return self._dwell.need if self._dwell.timed else None
+
+    @property
     def state(self) -> str:
         """ "idle", "collecting", or "confirming" while a complete sentence waits for its second end word."""
         if self._sentence is None:

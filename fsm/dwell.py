@@ -64,13 +64,13 @@ class Dwell:
         "_need",
         "_now_s",
         "_start",
-        "_timed",
         "_weighed",
         "need",
         "pair",
         "release",
         "spent",
         "step",
+        "timed",
     )
 
     def __init__(self, need: float, release: float, *, timed: bool = False, weighed: bool = False) -> None:
@@ -78,7 +78,7 @@ class Dwell:
         self.need = need
         self._need = need - tolerance
         self.release = min(release, need) - tolerance
-        self._timed = timed
+        self.timed = timed
         self._weighed = weighed
         self._start = 0.0 if timed else 1.0
         self._longest_step = need * LONGEST_GAP
@@ -107,7 +107,7 @@ class Dwell:
         self, pair: Pair | None, confidence: float, frame: int, time_s: float, now_s: float
     ) -> Hold | None:
         """The hold that became long enough in this frame, else None. now_s: seconds that never run back."""
-        if self._timed:
+        if self.timed:
             self._keep_time(now_s)
         if self.spent is not None and self._is_unreleased(pair, confidence):
             return None

@@ -23,6 +23,7 @@ from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.reading import ReadingStage, Sighting, is_crowded
+from lightgesture.reading_memory import memory_for_hold
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
 from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.threads import OneBlasThread
@@ -119,6 +120,7 @@ class Pipeline:
         self._decoder = Decoder(
             self._grammar, hold=self._hold, hold_seconds=self._hold_seconds, source=source
         )
+        self._memory = memory_for_hold(self._decoder.hold_frames, self._decoder.hold_seconds)
         self._clock = StageClock()
         self._index = 0
         self._processed = 0
@@ -156,7 +158,7 @@ class Pipeline:
                 )
                 for track in seen
             ]
-            hands = self._reading.process(upright, sightings)
+            hands = self._reading.process(upright, sightings, self._memory, time_s)
         with self._clock.stage("decode"):
             events = self._decode(hands, time_s, index)
         self._clock.end_frame()

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image, Side
 from lightgesture.models import NONE, Classifier
+from lightgesture.reading_memory import NO_MEMORY, ReadingMemory
 from lightgesture.records import Hand
 
 
@@ -108,8 +109,19 @@ class ReadingStage:
         self._classifier = classifier
         self._settings = settings or ReadingSettings()
 
-    def process(self, image: Image, sightings: Sequence[Sighting]) -> tuple[Hand, ...]:
-        """Read every sighting in one BGR frame, the diver's right hand first."""
+    def process(
+        self,
+        image: Image,
+        sightings: Sequence[Sighting],
+        memory: ReadingMemory | None = None,
+        time_s: float = 0.0,
+    ) -> tuple[Hand, ...]:
+        """Read every sighting in one BGR frame, the diver's right hand first.
+
+        memory: of the stream, whose frame at `time_s` seconds this is; None for a picture on its own.
+        """
+        memory = memory or NO_MEMORY
+        memory.keep_only([item.track for item in sightings])
         if not sightings:
             return ()
         boxes = [box for item in sightings for box in item.boxes]
@@ -120,16 +132,19 @@ class ReadingStage:
         for item in sightings:
             own = rows[first : first + len(item.boxes)]
             first += len(item.boxes)
-            hands.append(self._read(image, item, own))
+            hands.append(self._read(image, item, own, memory, time_s))
         return tuple(hands)
 
-    def _read(self, image: Image, item: Sighting, rows: NDArray[np.float32]) -> Hand:
+    def _read(
+        self, image: Image, item: Sighting, rows: NDArray[np.float32], memory: ReadingMemory, time_s: float
+    ) -> Hand:
         """The hand in the extent in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
+        steady = memory.steady(item.track, rows[place], time_s)
         box = item.boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(rows[place], classes, at_edge, item.is_crowded, self._settings)
+        token, confidence, reason = read_token(steady, classes, at_edge, item.is_crowded, self._settings)
         return Hand(
             side=item.side,
             token=token,

@@ -1,0 +1,57 @@
+"""Reading a hand over some frames: what is shorter than a part of a hold can be no sign."""
+
+import math
+from collections import deque
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+HOLD_SHARE: Final = 1 / 3
+"""Of the hold that is looked at: long enough to bridge a bad frame or two, and too short to make or hide a sign."""
+MOST_FRAMES: Final = 31
+"""Of a hold that is given in seconds: bounds the time of a fast camera's frames."""
+FEWEST_FOR_A_MEDIAN: Final = 3
+"""Frames of which one can be bad; of two the median is the mean, which is neither sign."""
+
+
+class ReadingMemory:
+    """What was read of each hand in the last frames, so that one bad frame does not break a sign that is held.
+
+    frames: how many frames are looked at, this one included, at least 1. seconds: for how long one is, infinite where
+    frames alone count. The median of each class's probability stands for the frame: it bridges fewer bad frames than
+    half of what is looked at, and goes from one sign to the next in one step.
+    """
+
+    def __init__(self, frames: int, seconds: float = math.inf) -> None:
+        self._frames, self._seconds = frames, seconds
+        self._rows: dict[int, deque[tuple[float, NDArray[np.float32]]]] = {}
+
+    def keep_only(self, tracks: Sequence[int | None]) -> None:
+        """Forget the hands that are not among these: one that comes back may show another sign."""
+        for number in self._rows.keys() - set(tracks):
+            del self._rows[number]
+
+    def steady(self, track: int | None, row: NDArray[np.float32], time_s: float) -> NDArray[np.float32]:
+        """The probabilities (classes,) of a hand now, from those of its last frames; of no track: as they are."""
+        if track is None or self._frames == 1:
+            return row
+        rows = self._rows.setdefault(track, deque(maxlen=self._frames))
+        rows.append((time_s, row))
+        while time_s - rows[0][0] > self._seconds or rows[0][0] > time_s:
+            rows.popleft()
+        if len(rows) < FEWEST_FOR_A_MEDIAN:
+            return row
+        return np.asarray(np.median([one for _, one in rows], axis=0), np.float32)
+
+
+NO_MEMORY: Final = ReadingMemory(1)
+"""Takes each picture on its own, and so remembers nothing."""
+
+
+def memory_for_hold(frames: int | None, seconds: float | None) -> ReadingMemory:
+    """The memory for signs that are held for so many frames, or for so many seconds."""
+    if frames is not None:
+        return ReadingMemory(max(1, int(frames * HOLD_SHARE)))
+    return ReadingMemory(MOST_FRAMES, (seconds or 0.0) * HOLD_SHARE)

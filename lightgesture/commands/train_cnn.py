@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 8000)")
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 20000)")
     parser.add_argument(
         "--teacher-steps",
         type=count,

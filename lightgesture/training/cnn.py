@@ -54,7 +54,7 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 8000
+    steps: int = 20000
     teacher_steps: int = 5000
     one_in: int = 12
     smallest_hand: int = 12

@@ -96,7 +96,8 @@ class TrackStage:
         """Whether each confirmed track would find its region among these at `time_s`, about where it was predicted;
         nothing changes. A hand that moved on was seen through a window beside it, and its box cannot be trusted."""
         step = self._step(time_s)
-        if candidates.source_size != self._size or step > self.settings.longest_step_s:
+        picture = self._size
+        if picture is None or candidates.source_size != picture or step > self.settings.longest_step_s:
             return False
         confirmed = [track for track in self._tracks if track.life == "confirmed"]
         predicted, observed = self._predicted(confirmed, step), self._look_at(candidates)
@@ -104,7 +105,7 @@ class TrackStage:
         if len(found) < len(confirmed):
             return False
         pairs = [
-            (box_of(predicted[place].motion, self._size), observed.regions[item.region].box)
+            (box_of(predicted[place].motion, picture), observed.regions[item.region].box)
             for place, item in found.items()
         ]
         return all(box_iou(one, other) >= self.settings.still_iou for one, other in pairs)

@@ -12,7 +12,7 @@ from torch.nn import functional
 
 from lightgesture.features.network import IntegerNetwork, Node, Shape
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
-from lightgesture.training.hand_samples import HandBatch, HandSamples, standardised
+from lightgesture.training.hand_samples import HandBatch, HandSamples
 from lightgesture.training.net_training import Batch, LoopSettings, train_net
 from lightgesture.training.quantise import quantise
 from lightgesture.training.torch_network import TorchNetwork
@@ -22,8 +22,6 @@ STANDARD_RANGE = (-3.0, 3.0)
 """Of the standardised values of patches and outlines."""
 CALIBRATION = 12
 """Batches from which the range of each tensor is measured."""
-AT_ONCE = 512
-"""Patches that are answered at once, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,15 +112,3 @@ def inputs_of(batch: HandBatch, scale: OutlineScale | None) -> dict[str, Tensor]
     if scale is not None:
         inputs[CONTOUR] = torch.from_numpy(scale.apply(batch.contours))[:, :, None, None]
     return inputs
-
-
-def scores_of(net: TorchNetwork, patches: NDArray[np.uint8], contours: Float, scale: OutlineScale) -> Float:
-    """Scores of patches, uint8 (n, size, size, 3), by the net in floating point: float32 (n, k)."""
-    found = []
-    known = scale if CONTOUR in net.inputs else None
-    for first in range(0, len(patches), AT_ONCE):
-        part = slice(first, first + AT_ONCE)
-        batch = HandBatch(standardised(patches[part]), contours[part], np.zeros(0, np.int64))
-        with torch.no_grad():
-            found.append(net(inputs_of(batch, known))[SCORES].numpy())
-    return np.concatenate(found)

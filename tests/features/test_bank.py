@@ -69,7 +69,7 @@ def test_moving_and_enlarging_hardly_change_a_descriptor(fingers, scale, at):
 def test_a_mirror_image_turns_the_sign_of_the_real_half(fingers, lean):
     mask = _mask(fingers, lean=lean)
     first, second = describe_outlines([_outline(mask), _outline(np.ascontiguousarray(mask[:, ::-1]))])
-    assert np.linalg.norm(mirrored(first[None])[0] - second) < 0.2
+    assert np.linalg.norm(mirrored(first[None])[0] - second) < 0.03
     np.testing.assert_allclose(mirrored(mirrored(first[None]))[0], first)
 
 

@@ -30,7 +30,7 @@ class NetSettings:
     taught: share of the loss that is the distance to the teacher's answers, 0 to 1. softness: temperature of both nets'
     answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
 
-    steps: int = 12000
+    steps: int
     batch: int = 128
     rate: float = 3e-3
     smoothing: float = 0.05

@@ -54,6 +54,12 @@ def archive(run, make_video, tmp_path, fake):
     return call
 
 
+def test_standard_input_does_not_go_to_other_machines(run):
+    result = run("decode", "-", "--cluster", "tcp://127.0.0.1:9")
+    assert result.status == ExitStatus.USAGE
+    assert result.err == ["lightgesture: -: standard input reaches no other machine; leave out --cluster"]
+
+
 def test_what_is_done_is_not_done_again(archive):
     assert archive() == ["a.avi", "b.avi"]
     before = results(archive.out)

@@ -78,6 +78,36 @@ def test_plain_words_and_quiet(run, fake, monkeypatch):
     assert result.err == []
 
 
+@pytest.mark.parametrize(
+    ("given", "hold", "hold_seconds"),
+    [
+        ([], None, 0.5),
+        (["--hold", 9], 9, None),
+        (["--hold-seconds", 0.8], None, 0.8),
+        (["--grammar", "my.toml"], None, None),
+    ],
+)
+def test_signs_are_held_by_time_unless_the_user_says_otherwise(
+    run, fake, monkeypatch, given, hold, hold_seconds
+):
+    result = run_on_standard_input(run, monkeypatch, FILES[0], "--quiet", *given)
+    assert result.status == ExitStatus.OK
+    options = fake.made[-1].options
+    assert (options["hold"], options["hold_seconds"]) == (hold, hold_seconds)
+
+
+def test_the_page_is_served_while_it_runs_and_its_address_told(run, fake, monkeypatch):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        busy = run_on_standard_input(run, monkeypatch, FILES[0], "--web", port)
+    assert busy.status == ExitStatus.USAGE
+    assert len(busy.err) == 1
+    assert busy.err[0].startswith(f"lightgesture: --web {port}: cannot listen")
+    result = run_on_standard_input(run, monkeypatch, FILES[0], "--web", port)
+    assert result.status == ExitStatus.OK
+    assert result.err[0] == f"lightgesture: the page is at http://127.0.0.1:{port}/"
+
+
 def test_standard_input_without_a_picture(run, fake, monkeypatch):
     result = run_on_standard_input(run, monkeypatch, b"no picture", "--json", "--quiet")
     assert result.status == ExitStatus.SOME_FAILED

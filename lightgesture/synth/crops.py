@@ -49,8 +49,10 @@ class CropSettings:
 
     size: range of the crop's side in pixels. palm: share of palms among tokens other than left/right. glove, water,
     none: shares of gloved hands, of hands seen through water and of shapes that are no token. person: share of rooms
-    with somebody in them. yaw, pitch, roll: standard deviations in degrees. looseness: range, see
-    `poses.token_pose`. backdrops: number of surroundings of each kind, drawn once.
+    with somebody in them. yaw, pitch, roll: standard deviations in degrees. sideways: share of rings of thumb and
+    index that are turned further about their long axis, until the other fingers stand behind one another, by an angle
+    of the range turn, degrees. looseness: range, see `poses.token_pose`. backdrops: number of surroundings of each
+    kind, drawn once.
     """
 
     size: tuple[int, int] = (40, 112)
@@ -62,6 +64,8 @@ class CropSettings:
     yaw: float = 20.0
     pitch: float = 14.0
     roll: float = 13.0
+    sideways: float = 0.0
+    turn: tuple[float, float] = (15.0, 55.0)
     looseness: tuple[float, float] = (0.4, 1.4)
     backdrops: int = 16
 
@@ -167,6 +171,8 @@ class CropMaker:
         look = HandLook(sample_proportions(rng), tone, paint_atlas(rng, tone.glove), sleeve)
         bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
         yaw = TOKEN_YAW_DEG.get(shape, 0.0) + rng.normal(0.0, settings.yaw) + (0.0 if palm else 180.0)
+        if shape in TOKEN_YAW_DEG and settings.sideways and rng.uniform() < settings.sideways:
+            yaw += rng.uniform(*settings.turn)
         sign = -1.0 if left else 1.0
         lean = TOKEN_LEAN_DEG.get(shape, 0.0) * (-1.0 if left == palm else 1.0)
         rotation = (

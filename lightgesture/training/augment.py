@@ -31,6 +31,8 @@ class AugmentSettings:
         for a shifted and enlarged box.
     mirror: share of mirrored copies.
     rotation: standard deviation, degrees. stretch: standard deviation of the logarithm of the aspect.
+    narrowed: share of copies whose width shrinks besides, as that of a hand turned about its long axis does, by a
+        factor down to `narrowest`.
     shear: standard deviation, a share of the height.
     background: share of copies before another background. finger_width: of the drawn mask over the palm's
         length; wider keeps a rim of the old background, narrower cuts fingers.
@@ -42,6 +44,8 @@ class AugmentSettings:
     mirror: float = 0.5
     rotation: float = 14.0
     stretch: float = 0.14
+    narrowed: float = 0.0
+    narrowest: float = 0.6
     shear: float = 0.10
     background: float = 0.5
     finger_width: float = 0.3
@@ -108,6 +112,8 @@ def _turned(hand: LabelledHand, settings: AugmentSettings, random: Random) -> _C
     x, y, width, height = hand.box
     angle = np.deg2rad(random.normal(0.0, settings.rotation))
     aspect = np.exp(random.normal(0.0, settings.stretch))
+    if settings.narrowed and random.random() < settings.narrowed:
+        aspect *= random.uniform(settings.narrowest, 1.0)
     shear = random.normal(0.0, settings.shear)
     zoom = settings.canvas / (settings.reach * max(width, height))
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

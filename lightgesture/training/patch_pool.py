@@ -18,9 +18,11 @@ from numpy.typing import NDArray
 
 from lightgesture.features.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.patch import PatchSettings, cut_patch
+from lightgesture.features.types import Image
 from lightgesture.models import NONE, TrainingSample
 from lightgesture.results.atomic import replacing
 from lightgesture.training.augment import MIRRORED_TOKENS, AugmentSettings, augment
+from lightgesture.training.hidden_hands import HidingSettings, hide
 from lightgesture.training.light import relight
 from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
 from lightgesture.training.samples import LabelledHand
@@ -35,22 +37,27 @@ class PoolSettings:
     """How much is drawn and how.
 
     copies: altered copies of each hand, 1 to 100. rounds: how often regions that are no hand are drawn from each
-    picture. patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in
-    training. contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered
-    hands, and how they vary. augment, negative: how copies and regions are made.
+    picture. hidden: share of the rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
+    patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
+    contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered hands, and how
+    they vary. augment, negative, hiding: how copies, regions and hidden hands are made.
     """
 
     copies: int = 24
-    rounds: int = 6
+    rounds: int = 8
+    hidden: float = 0.5
     patch: PatchSettings = field(default_factory=lambda: PatchSettings(size=32, context=1.1))
     margin: int = 2
     contour: ContourSettings = field(default_factory=ContourSettings)
-    rendered: int = 8000
+    rendered: int = 12000
     synthetic: SyntheticSettings = field(default_factory=SyntheticSettings)
     augment: AugmentSettings = field(
-        default_factory=lambda: AugmentSettings(rotation=18.0, scale=0.11, shift=0.06)
+        default_factory=lambda: AugmentSettings(
+            rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
+        )
     )
     negative: NegativeSettings = field(default_factory=NegativeSettings)
+    hiding: HidingSettings = field(default_factory=HidingSettings)
 
     @property
     def kept(self) -> PatchSettings:
@@ -81,7 +88,7 @@ class PatchPool:
 
 
 class _Task(NamedTuple):
-    """kind: "hands", "missed", "regions" or "rendered". first, last: of what is drawn. turn: which time."""
+    """kind: one of `_KINDS`. first, last: of what is drawn. turn: which time."""
 
     kind: str
     first: int
@@ -149,6 +156,7 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
         scenes = len(originals.backgrounds) + len(originals.scenes)
         tasks += parts("regions", scenes, settings.rounds)
         tasks += parts("missed", len(originals.hands), settings.rounds)
+        tasks += parts("hidden", len(originals.hands), settings.rounds)
     return tasks + parts("rendered", settings.rendered, 1)
 
 
@@ -173,11 +181,9 @@ def _draw(task: _Task) -> _Rows:
     if _worker is None:
         raise RuntimeError("the worker has nothing to draw from; call make_pool")
     originals, settings, seed = _worker
-    draw = {"hands": _copies, "missed": _missed, "regions": _regions, "rendered": _rendered}[task.kind]
-    kind = ("hands", "missed", "regions", "rendered").index(task.kind)
-    random = np.random.default_rng((seed, kind, task.turn, task.first))
+    random = np.random.default_rng((seed, list(_KINDS).index(task.kind), task.turn, task.first))
     size, patches, tokens, sources = settings.kept, [], [], []
-    for sample in draw(originals, settings, task, random):
+    for sample in _KINDS[task.kind](originals, settings, task, random):
         patches.append(cut_patch(sample.image, sample.box, sample.side, size))
         tokens.append(sample.token)
         sources.append(sample.source)
@@ -193,7 +199,7 @@ def _draw(task: _Task) -> _Rows:
 def _copies(
     originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
 ) -> Iterator[TrainingSample]:
-    pictures = [scene.image for scene in originals.backgrounds] or [one.image for one in originals.hands]
+    pictures = _behind(originals)
     tokens = {hand.token for hand in originals.hands}
     unmirrored = replace(settings.augment, mirror=0.0)
     for hand in originals.hands[task.first : task.last]:
@@ -202,6 +208,25 @@ def _copies(
         yield TrainingSample(
             image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
         )
+
+
+def _behind(originals: Originals) -> list[Image]:
+    """What may stand behind a hand: water and rooms, or where there is neither, what stands behind other hands."""
+    scenes = [scene.image for scene in (*originals.backgrounds, *originals.scenes)]
+    return scenes or [one.image for one in originals.hands]
+
+
+def _hidden(
+    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
+) -> Iterator[TrainingSample]:
+    pictures = _behind(originals)
+    for hand in originals.hands[task.first : task.last]:
+        if random.random() < settings.hidden:
+            image, box, _ = augment(hand, pictures, settings.augment, random)
+            image, box = hide(image, box, pictures, settings.hiding, random)
+            yield TrainingSample(
+                image=image, box=box, side=hand.side, token=NONE, source=hand.source, original=False
+            )
 
 
 def _missed(
@@ -217,9 +242,13 @@ def _missed(
 def _regions(
     originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
 ) -> Iterator[TrainingSample]:
-    scenes = [*originals.backgrounds, *originals.scenes][task.first : task.last]
-    for region in negatives(scenes, settings.negative, random):
-        yield _relit(region, settings, random)
+    scenes = [*originals.backgrounds, *originals.scenes]
+    for number in range(task.first, task.last):
+        for region in negatives(scenes[number : number + 1], settings.negative, random):
+            if not scenes[number].hands:
+                # Water differs from picture to picture as people do from source to source, and weighs like them.
+                region = replace(region, source=f"{region.source} {number}")
+            yield _relit(region, settings, random)
 
 
 def _rendered(
@@ -230,6 +259,16 @@ def _rendered(
     for sample in synthetic_hands(task.last - task.first, seed, settings.synthetic, settings.augment):
         if not tokens or sample.token in tokens:
             yield sample
+
+
+_KINDS = {
+    "hands": _copies,
+    "missed": _missed,
+    "regions": _regions,
+    "rendered": _rendered,
+    "hidden": _hidden,
+}
+"""What is drawn, by kind; the place in this table seeds it."""
 
 
 def _relit(region: TrainingSample, settings: PoolSettings, random: np.random.Generator) -> TrainingSample:

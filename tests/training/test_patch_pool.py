@@ -1,5 +1,7 @@
 """The pool of altered patches: what is in it, and that neither processes nor reruns change it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,7 +39,9 @@ def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
             assert pool.sources[row] == hand.source
             turned = {"left": {"left", "right"}, "right": {"left", "right"}}.get(hand.token, {hand.token})
             assert pool.tokens[row] in turned
-    assert set(pool.tokens[pool.sources == "water"]) == {"none"}
+    # Each picture of water is a source of its own.
+    assert set(pool.tokens[pool.sources == "water 0"]) == {"none"}
+    assert "water" not in pool.sources
     assert any(source.startswith("synthetic") for source in pool.sources)
 
 
@@ -71,3 +75,28 @@ def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path)
     assert set(batch.truth.tolist()) == {0}
     same = samples.draw(np.random.default_rng(1), 300)
     np.testing.assert_array_equal(batch.patches, same.patches)
+
+
+def test_some_hands_are_hidden_and_called_none(originals, tmp_path):
+    def called_none(hidden):
+        settings = replace(SETTINGS, hidden=hidden)
+        pool = make_pool(originals, settings, 0, 1, tmp_path / str(hidden), lambda *_: None)
+        assert (pool.tokens[pool.hands < 0][:1] == "none").all()
+        people = np.char.startswith(pool.sources, "person")
+        return int((people & (pool.hands < 0)).sum())
+
+    assert called_none(1.0) == called_none(0.0) + len(originals.hands)
+
+
+def test_answers_of_other_nets_stay_with_their_patches(originals, tmp_path):
+    pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
+    chosen = pool.tokens == "5"
+    samples = HandSamples(pool, chosen, ("5",), SETTINGS.margin, HandSampling(erased=0.0))
+    assert samples.draw(np.random.default_rng(1), 3).answers is None
+    middles = samples.middles(0, len(samples))
+    told = samples.with_answers(np.arange(len(samples), dtype=np.float16)[:, None])
+    batch = told.draw(np.random.default_rng(1), 40)
+    for patch, (answer,) in zip(batch.patches, batch.answers, strict=True):
+        # Shifted by two pixels at most, a patch is nearest to its own middle in what it is made of.
+        ranges = np.abs(np.sort(patch, axis=None) - np.sort(middles[int(answer)], axis=None)).mean()
+        assert ranges < 0.2

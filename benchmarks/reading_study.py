@@ -45,6 +45,7 @@ from lightgesture.benchmarks.study_rows import (
     scored_cells,
 )
 from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.commands.train_cnn import PRECISIONS, SIZES
 from lightgesture.console import say
 from lightgesture.datasets import find_data, fold_of
 from lightgesture.errors import InputError
@@ -55,7 +56,6 @@ FOLDS = 5
 SUBJECTS_ONE_IN = 5
 COUNTS = (10, 30, 100, 200)
 """Numbers of training sources of the curve, before all of them."""
-SIZES = ("small", "medium", "large")
 
 
 def folds(study: Study, training: CnnTraining, folder: Path, args: argparse.Namespace) -> list[Table]:
@@ -187,8 +187,14 @@ def run(args: argparse.Namespace) -> None:
     from lightgesture.training.checkpoints import need_torch
 
     need_torch()
-    training = replace(training_from(args), size=args.size, teacher_steps=args.teacher_steps)
-    training = replace(training, contours=args.outline)
+    training = replace(
+        training_from(args),
+        size=args.size,
+        contours=args.outline,
+        teachers=args.teachers,
+        teacher_steps=args.teacher_steps,
+        precision=args.precision,
+    )
     study = open_study(find_data(args.data), Path(args.pool), training, say)
     folder = Path(args.pool) / "studies" / args.kind
     folder.mkdir(parents=True, exist_ok=True)
@@ -208,7 +214,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         add_data_argument(own)
         add_pool_arguments(own)
         own.add_argument(
-            "--teacher-steps", type=whole, default=0, metavar="N", help="of a teacher (default 0: none)"
+            "--teachers", type=whole, default=0, metavar="N", help="larger nets to learn from (default 0)"
+        )
+        own.add_argument(
+            "--teacher-steps", type=positive, default=2500, metavar="N", help="of each (default 2500)"
+        )
+        own.add_argument(
+            "--precision", choices=PRECISIONS, default="float32", help="see train cnn (default float32)"
         )
         own.add_argument("--size", choices=SIZES, default="medium", help="of the net (default medium)")
         own.add_argument("--outline", action="store_true", help="the net looks at the outline's numbers, too")

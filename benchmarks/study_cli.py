@@ -57,9 +57,7 @@ def whole(text: str) -> int:
 
 def training_from(args: argparse.Namespace) -> CnnTraining:
     """The training that the arguments ask for. InputError: there is no data folder."""
-    training = training_of(
-        find_data(args.data), seed=args.seed, jobs=args.jobs, steps=args.steps, teacher_steps=0
-    )
+    training = training_of(find_data(args.data), seed=args.seed, jobs=args.jobs, steps=args.steps, teachers=0)
     pool = training.pool
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)

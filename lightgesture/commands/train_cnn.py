@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from lightgesture.training.cnn import CnnTraining
 
 SIZES = ("small", "medium", "large")
+PRECISIONS = ("float32", "bfloat16")
+"""Those of `training.net_training`, which is not imported here because it needs torch."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,12 +31,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 20000)")
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 40000)")
     parser.add_argument(
-        "--teacher-steps",
+        "--teachers",
         type=count,
         metavar="N",
-        help="of the larger net that is learnt from; 0: learn from the labels alone (default: 5000)",
+        help="larger nets that are learnt from; 0: learn from the labels alone (default: 2)",
+    )
+    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 8000)")
+    parser.add_argument(
+        "--precision",
+        choices=PRECISIONS,
+        default="float32",
+        help="of the training; bfloat16 takes two thirds of the time on processors with instructions for it "
+        "(avx512_bf16, amx) and several times as long on others",
     )
     parser.add_argument(
         "--copies",
@@ -43,9 +53,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="altered copies of each hand (default: 24); time and disk grow",
     )
     parser.add_argument(
-        "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 8000)"
+        "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 12000)"
     )
-    parser.add_argument("--jobs", type=count, default=1, metavar="N", help="processes that draw (default: 1)")
+    parser.add_argument(
+        "--jobs",
+        type=count,
+        default=1,
+        metavar="N",
+        help="processes that draw, and larger nets that learn at a time (default: 1); changes nothing else",
+    )
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
 
@@ -72,9 +88,9 @@ def _training(args: argparse.Namespace) -> "CnnTraining":
 
     if args.data is None:
         raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
-    for name, value in (("steps", args.steps), ("jobs", args.jobs), ("copies", args.copies)):
-        if value == 0:
-            raise UsageError(f"--{name} is 0; it must be 1 or more")
+    for name in ("steps", "teacher_steps", "jobs", "copies"):
+        if getattr(args, name) == 0:
+            raise UsageError(f"--{name.replace('_', '-')} is 0; it must be 1 or more")
     training = CnnTraining(
         data=Path(args.data),
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
@@ -84,11 +100,11 @@ def _training(args: argparse.Namespace) -> "CnnTraining":
         jobs=args.jobs,
         size=args.size,
         contours=args.outline,
+        precision=args.precision,
     )
-    if args.steps is not None:
-        training = replace(training, steps=args.steps)
-    if args.teacher_steps is not None:
-        training = replace(training, teacher_steps=args.teacher_steps)
+    for name in ("steps", "teachers", "teacher_steps"):
+        if (value := getattr(args, name)) is not None:
+            training = replace(training, **{name: value})
     pool = training.pool
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)

@@ -29,6 +29,7 @@ from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read
 
 if TYPE_CHECKING:
     from lightgesture.training.hand_net import NetSettings
+    from lightgesture.training.net_training import Precision
 
 Progress = Callable[[str], None]
 
@@ -41,7 +42,8 @@ class CnnTraining:
     whole pictures with boxes of hands and faces, or None. without: sources of `data` that are left out. seed: of
     everything drawn. jobs: processes that draw patches.
     size: of the net, "small", "medium" or "large". contours: whether it looks at the outline's numbers, too.
-    steps: of the optimiser. teacher_steps: of the larger net that it learns from, 0 for none.
+    steps: of the optimiser. teachers: number of larger nets that it learns from, too, 0 for none. teacher_steps: of
+    each of these. precision: in which nets are reckoned while they learn, see `net_training.PRECISIONS`.
     one_in: of so many sources, one is kept from the net, for the temperature and the scores of the card.
     smallest_hand: longer side of the smallest box that is read, pixels. pool: what is drawn.
     """
@@ -54,8 +56,10 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 20000
-    teacher_steps: int = 5000
+    steps: int = 40000
+    teachers: int = 2
+    teacher_steps: int = 8000
+    precision: "Precision" = "float32"
     one_in: int = 12
     smallest_hand: int = 12
     pool: PoolSettings = field(default_factory=PoolSettings)
@@ -116,21 +120,21 @@ def fit(
     progress: Progress,
 ) -> CnnModel:
     """A net trained on the chosen rows of the pool, in integers, its temperature not yet fitted."""
-    from lightgesture.training.architectures import hand_nodes, teacher_nodes
+    from lightgesture.training.architectures import hand_nodes
     from lightgesture.training.hand_net import OutlineScale, make_net, to_integers, train_hand_net
+    from lightgesture.training.teachers import teach
 
     settings, seed, patch = net_settings(training), training.seed, training.pool.patch
     samples = HandSamples(pool, chosen, classes, training.pool.margin)
+    if training.teachers:
+        how = replace(settings, steps=training.teacher_steps)
+        answers = teach(samples, training.teachers, how, seed, training.jobs, folder, progress)
+        samples = samples.with_answers(answers)
     length = contour_length(training.pool.contour) if training.contours else 0
     outlines = pool.contours[chosen, :length].astype(np.float32)
     scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))
-    teacher = None
-    if training.teacher_steps:
-        larger = make_net(teacher_nodes(len(classes)), patch.size, 0, seed)
-        how = replace(settings, steps=training.teacher_steps)
-        teacher = train_hand_net(larger, samples, scale, how, seed, folder / "teacher.pt", progress)
     net = make_net(hand_nodes(len(classes), length, training.size), patch.size, length, seed)
-    net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress, teacher)
+    net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress)
     return CnnModel(
         classes=classes,
         patch=patch,
@@ -147,7 +151,7 @@ def net_settings(training: CnnTraining) -> "NetSettings":
     """Those of the optimiser."""
     from lightgesture.training.hand_net import NetSettings
 
-    return NetSettings(steps=training.steps)
+    return NetSettings(training.steps, training.precision)
 
 
 def answers(model: CnnModel, originals: Originals, pool: PatchPool, kept: NDArray[np.bool_]) -> HeldOut:
@@ -200,7 +204,8 @@ def make_card(
         },
         "training": {
             "seed": training.seed,
-            "steps": {"net": training.steps, "teacher": training.teacher_steps},
+            "steps": {"net": training.steps, "each_teacher": training.teacher_steps},
+            "teachers": training.teachers,
             "settings": {"pool": asdict(training.pool), "net": asdict(net_settings(training))},
             "kept_from_the_net": f"one in {training.one_in} sources, for the temperature and the scores below",
             "torch": str(torch.__version__),

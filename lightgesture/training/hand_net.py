@@ -1,4 +1,4 @@
-"""Training of a hand net on a pool of patches, if wanted from a larger net's answers too. Needs torch."""
+"""Training of a hand net on a pool of patches, if wanted from larger nets' answers too. Needs torch."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from torch.nn import functional
 from lightgesture.features.network import IntegerNetwork, Node, Shape
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
 from lightgesture.training.hand_samples import HandBatch, HandSamples
-from lightgesture.training.net_training import Batch, LoopSettings, train_net
+from lightgesture.training.net_training import Batch, LoopSettings, Precision, train_net
 from lightgesture.training.quantise import quantise
 from lightgesture.training.torch_network import TorchNetwork
 
@@ -26,11 +26,13 @@ CALIBRATION = 12
 
 @dataclass(frozen=True, slots=True)
 class NetSettings:
-    """steps, batch, rate: of the optimiser. smoothing: share of the truth that is spread over all classes, 0 to 0.2.
-    taught: share of the loss that is the distance to the teacher's answers, 0 to 1. softness: temperature of both nets'
+    """steps, batch, rate: of the optimiser. precision: see `net_training.PRECISIONS`.
+    smoothing: share of the truth that is spread over all classes, 0 to 0.2.
+    taught: share of the loss that is the distance to the teachers' answers, 0 to 1. softness: temperature of both
     answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
 
     steps: int
+    precision: Precision = "float32"
     batch: int = 128
     rate: float = 3e-3
     smoothing: float = 0.05
@@ -63,23 +65,24 @@ def make_net(nodes: tuple[Node, ...], size: int, contours: int, seed: int) -> To
 def train_hand_net(
     net: TorchNetwork,
     samples: HandSamples,
-    scale: OutlineScale,
+    scale: OutlineScale | None,
     settings: NetSettings,
     seed: int,
     checkpoint: Path,
     progress: Callable[[str], None],
-    teacher: TorchNetwork | None = None,
 ) -> TorchNetwork:
-    """The trained net in floating point; goes on at `checkpoint` where there is one."""
+    """The trained net in floating point; goes on at `checkpoint` where there is one. scale: None for a net without
+    outline.
+
+    It takes one thread: a step of so small a net is no quicker on two, and so no number of cores changes the result.
+    """
+    torch.set_num_threads(1)
 
     def batch(rng: np.random.Generator) -> Batch:
         drawn = samples.draw(rng, settings.batch)
         inputs = inputs_of(drawn, scale if CONTOUR in net.inputs else None)
-        truth: tuple[Tensor, ...] = (torch.from_numpy(drawn.truth),)
-        if teacher is not None:
-            with torch.no_grad():
-                truth = (*truth, teacher({PATCH: inputs[PATCH]})[SCORES])
-        return inputs, truth
+        truth = (drawn.truth,) if drawn.answers is None else (drawn.truth, drawn.answers)
+        return inputs, tuple(torch.from_numpy(values) for values in truth)
 
     def loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
         scores = outputs[SCORES]
@@ -91,7 +94,8 @@ def train_hand_net(
         far = functional.kl_div(torch.log_softmax(scores / soft, dim=1), wanted, reduction="batchmean")
         return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
 
-    loop = LoopSettings(settings.steps, settings.rate, warm_up=max(1, min(300, settings.steps // 4)))
+    warm_up = max(1, min(300, settings.steps // 4))
+    loop = LoopSettings(settings.steps, settings.rate, warm_up=warm_up, precision=settings.precision)
     return train_net(net, batch, loss, loop, seed, checkpoint, progress)
 
 

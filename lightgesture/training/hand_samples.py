@@ -1,5 +1,6 @@
 """Batches for a hand net, drawn from a pool of altered patches."""
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -27,11 +28,13 @@ class HandSampling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HandBatch:
-    """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,)."""
+    """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,).
+    answers: float32 (n, classes), scores of other nets for the same patches, None where nobody gave any."""
 
     patches: Float
     contours: Float
     truth: NDArray[np.int64]
+    answers: Float | None = None
 
 
 def standardised(patches: NDArray[np.uint8]) -> Float:
@@ -57,11 +60,33 @@ class HandSamples:
     ) -> None:
         """chosen: bool (n,), of the pool. margin: pixels by which a patch may be shifted each way."""
         self._pool, self._margin, self._settings = pool, margin, settings or HandSampling()
+        self._answers: NDArray[np.float16] | None = None
+        self.classes = tuple(classes)
         self._rows = np.flatnonzero(chosen)
         index = {name: number for number, name in enumerate(classes)}
         self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
         weights = sample_weights(self._truth, pool.sources[self._rows]).astype(np.float64)
         self._cumulative = np.cumsum(weights) / weights.sum()
+
+    def __len__(self) -> int:
+        """Number of rows of the pool that are drawn from."""
+        return len(self._rows)
+
+    @property
+    def size(self) -> int:
+        """Side of a drawn patch, pixels."""
+        return int(self._pool.patches.shape[1] - 2 * self._margin)
+
+    def with_answers(self, answers: NDArray[np.float16]) -> "HandSamples":
+        """The same, its batches with other nets' scores: (rows, classes), as `middles` counts the rows."""
+        other = copy.copy(self)
+        other._answers = answers
+        return other
+
+    def middles(self, first: int, last: int) -> Float:
+        """The chosen rows `first` to `last` as they are, neither shifted nor covered: (n, size, size, 3)."""
+        inner = slice(self._margin, self._margin + self.size)
+        return standardised(np.asarray(self._pool.patches[self._rows[first:last]][:, inner, inner]))
 
     def draw(self, random: Random, count: int) -> HandBatch:
         """`count` patches."""
@@ -69,10 +94,11 @@ class HandSamples:
         rows = self._rows[drawn]
         seen = standardised(self._shifted(rows, random))
         self._erase(seen, random)
-        return HandBatch(seen, self._pool.contours[rows].astype(np.float32), self._truth[drawn])
+        answers = None if self._answers is None else self._answers[drawn].astype(np.float32)
+        return HandBatch(seen, self._pool.contours[rows].astype(np.float32), self._truth[drawn], answers)
 
     def _shifted(self, rows: NDArray[np.int64], random: Random) -> NDArray[np.uint8]:
-        size = self._pool.patches.shape[1] - 2 * self._margin
+        size = self.size
         corners = random.integers(2 * self._margin + 1, size=(len(rows), 2))
         parts = [
             self._pool.patches[row, top : top + size, left : left + size]

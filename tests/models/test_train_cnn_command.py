@@ -18,7 +18,7 @@ def train(folder: Path, out: Path, *more: str) -> int:
     return main(["train", "cnn", "--data", str(folder), "--out", str(out), *QUICK, *more])
 
 
-@pytest.mark.parametrize("more", [(), ("--outline", "--teacher-steps", "0")], ids=["taught", "outline"])
+@pytest.mark.parametrize("more", [(), ("--outline", "--teachers", "0")], ids=["taught", "outline"])
 def test_folders_become_a_model_and_its_card(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], more: tuple[str, ...]
 ) -> None:
@@ -43,7 +43,7 @@ def test_folders_become_a_model_and_its_card(
 
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
     for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
-        more = ("--seed", seed, "--quiet", "--teacher-steps", "0")
+        more = ("--seed", seed, "--quiet", "--teachers", "0")
         assert train(folder, tmp_path / f"{name}.npz", *more) == 0
     arrays = {}
     for name in "abc":
@@ -53,12 +53,23 @@ def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> Non
     assert any((arrays["a"][key] != arrays["c"][key]).any() for key in arrays["a"] if key.endswith("weights"))
 
 
+def test_teachers_that_learn_at_a_time_change_nothing(folder: Path, tmp_path: Path) -> None:
+    for jobs in ("1", "2"):
+        assert train(folder, tmp_path / f"{jobs}.npz", "--quiet", "--teachers", "2", "--jobs", jobs) == 0
+    one, two = (dict(np.load(tmp_path / f"{jobs}.npz")) for jobs in ("1", "2"))
+    assert all((one[key] == two[key]).all() for key in one)
+    answers = np.load(tmp_path / "1.parts" / "answers.npy")
+    assert answers.dtype == np.float16
+    assert answers.shape[1] == 3
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "words"),
     [
         (["--data", "nowhere.csv"], 1, "nowhere.csv: cannot be read"),
         (["--data", "{folder}", "--out", "model.pickle"], 2, "ends in .npz"),
         (["--data", "{folder}", "--steps", "0"], 2, "--steps"),
+        (["--data", "{folder}", "--teacher-steps", "0"], 2, "--teacher-steps is 0"),
         ([], 2, "--data"),
     ],
 )

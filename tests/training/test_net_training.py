@@ -63,13 +63,14 @@ def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path):
     assert not same(train(tmp_path / "other.pt", seed=6), whole)
 
 
-def test_training_lowers_the_loss(tmp_path):
+@pytest.mark.parametrize("precision", ["float32", "bfloat16"])
+def test_training_lowers_the_loss(tmp_path, precision):
     from lightgesture.training.net_training import LoopSettings, train_net
 
     inputs, truth = brightness(np.random.default_rng(9))
-    trained = train_net(
-        a_net(), brightness, squared, LoopSettings(60, 0.02, warm_up=5), 0, tmp_path / "net.pt", [].append
-    )
+    settings = LoopSettings(60, 0.02, warm_up=5, precision=precision)
+    trained = train_net(a_net(), brightness, squared, settings, 0, tmp_path / "net.pt", [].append)
+    assert all(value.dtype == torch.float32 for value in trained.parameters())
     with torch.no_grad():
         assert squared(trained(inputs), truth) < 0.3 * squared(a_net().eval()(inputs), truth)
 

@@ -68,9 +68,9 @@ class CnnClassifier:
         """Scores of patches, uint8 (n, size, size, 3), BGR -> float32 (n, k)."""
         model, network = self.model, self._network
         seen = np.empty(patches.shape, np.int8)
-        tables = network.table(PATCH, patch_tables(patches))
+        tables = np.ascontiguousarray(network.table(PATCH, patch_tables(patches)))
         for place, patch in enumerate(patches):
-            seen[place] = cv2.LUT(patch, tables[place, None])
+            cv2.LUT(patch, tables[place, None], seen[place])
         inputs = {PATCH: seen}
         if model.contour is not None:
             numbers = (contour_vectors(patches, model.contour) - model.contour_mean) / model.contour_deviation

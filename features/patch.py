@@ -77,9 +77,9 @@ def _resized(square: Image, size: int) -> Image:
     """The square picture at `size` × `size` pixels.
 
     Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
-    is sampled at twice the size first: averaging all its pixels takes four times as long and reads no better.
+    is sampled at twice the size first: averaging all its pixels takes three to four times as long and reads no better.
     """
-    if square.shape[0] > 3 * size:
+    if square.shape[0] > 2 * size:
         square = np.asarray(
             cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR), np.uint8
         )

@@ -31,7 +31,6 @@ from lightgesture.benchmarks.study_data import (
     held_out_subjects,
     open_study,
     rows_of_sources,
-    rows_without,
     val_answers,
 )
 from lightgesture.benchmarks.study_pools import POOLS
@@ -51,6 +50,7 @@ from lightgesture.datasets import find_data, fold_of
 from lightgesture.errors import InputError
 from lightgesture.models.loading import SHIPPED
 from lightgesture.training.cnn import CnnTraining, kept_out, read_originals
+from lightgesture.training.patch_pool import rows_without
 
 FOLDS = 5
 SUBJECTS_ONE_IN = 5

@@ -14,7 +14,8 @@ from lightgesture.datasets import Label, Sample, read_hands, read_table
 from lightgesture.errors import InputError
 from lightgesture.models import CLASSES
 from lightgesture.training.cnn import CnnTraining, read_originals
-from lightgesture.training.patch_pool import Originals, PatchPool, PoolSettings, make_pool
+from lightgesture.training.patch_kinds import Originals, PoolSettings
+from lightgesture.training.patch_pool import PatchPool, make_pool
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
 
 LEFT_OUT = ("emre_drone",)
@@ -100,15 +101,6 @@ def _rows_and_subjects(data: Path, training: CnnTraining) -> tuple[list[HandRow]
     named = [row.get("subject") or "" for row in read_table(data, "hands/train.csv")]
     kept = [place for place, row in enumerate(rows) if row.source not in training.without]
     return [rows[place] for place in kept], [named[place] for place in kept]
-
-
-def rows_without(pool: PatchPool, sources: NDArray[np.str_], held_out: Mask) -> Mask:
-    """Rows of the pool for a training that sees nothing of the held-out hands, bool (rows,).
-
-    sources, held_out: of the hands. Of a source with a held-out hand, no region without a hand is kept either.
-    """
-    touched = np.unique(sources[held_out])
-    return np.where(pool.hands >= 0, ~held_out[pool.hands], ~np.isin(pool.sources, touched))
 
 
 def rows_of_sources(pool: PatchPool, sources: NDArray[np.str_], chosen: Sequence[str]) -> Mask:

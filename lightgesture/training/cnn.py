@@ -24,7 +24,8 @@ from lightgesture.training.card import LIMITS, data_section, held_out_section, o
 from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.hand_samples import HandSamples
 from lightgesture.training.negatives import read_backgrounds, read_scenes
-from lightgesture.training.patch_pool import Originals, PatchPool, PoolSettings, make_pool
+from lightgesture.training.patch_kinds import Originals, PoolSettings
+from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
 
 if TYPE_CHECKING:
@@ -81,7 +82,8 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     kept = kept_out(originals.hands, training.one_in)
     present = {row.token for row in rows}
     classes = tuple(name for name in CLASSES if name in present)
-    model = fit(pool, ~_rows_of(pool, originals.hands, kept), classes, training, folder, progress)
+    sources = np.array([hand.source for hand in originals.hands])
+    model = fit(pool, rows_without(pool, sources, kept), classes, training, folder, progress)
     held_out = answers(model, originals, pool, kept)
     model = replace(model, temperature=fit_temperature(*_logits(held_out)))
     calibrated = replace(held_out, probabilities=softmax(held_out.probabilities, model.temperature))
@@ -223,13 +225,6 @@ def make_card(
 
 def _logits(held_out: HeldOut) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     return held_out.probabilities, held_out.truth
-
-
-def _rows_of(pool: PatchPool, hands: Sequence[LabelledHand], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Rows of the pool that show a chosen hand, or another region of a source of which every hand is chosen."""
-    others = {hand.source for hand, is_chosen in zip(hands, chosen, strict=True) if not is_chosen}
-    whole = {hand.source for hand in hands} - others
-    return np.where(pool.hands >= 0, chosen[pool.hands], np.isin(pool.sources, sorted(whole)))
 
 
 def _told(progress: Progress) -> Callable[[str, int, int], None]:

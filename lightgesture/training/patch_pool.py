@@ -8,71 +8,21 @@ import json
 import multiprocessing
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.contours import ContourSettings, contour_length, contour_vectors
-from lightgesture.features.patch import PatchSettings, cut_patch
-from lightgesture.features.types import Image
-from lightgesture.models import NONE, TrainingSample
+from lightgesture.features.contours import contour_length, contour_vectors
+from lightgesture.features.patch import cut_patch
+from lightgesture.models import NONE
 from lightgesture.results.atomic import replacing
-from lightgesture.training.augment import MIRRORED_TOKENS, AugmentSettings, augment
-from lightgesture.training.hidden_hands import HidingSettings, hide
-from lightgesture.training.light import relight
-from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
-from lightgesture.training.samples import LabelledHand
-from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
+from lightgesture.training.patch_kinds import KINDS, Originals, PoolSettings
 
 Progress = Callable[[str, int, int], None]
 HANDS_A_TASK = 400
-
-
-@dataclass(frozen=True, slots=True)
-class PoolSettings:
-    """How much is drawn and how.
-
-    copies: altered copies of each hand, 1 to 100. rounds: how often regions that are no hand are drawn from each
-    picture. hidden: share of the rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
-    patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
-    contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered hands, and how
-    they vary. augment, negative, hiding: how copies, regions and hidden hands are made.
-    """
-
-    copies: int = 24
-    rounds: int = 8
-    hidden: float = 0.5
-    patch: PatchSettings = field(default_factory=lambda: PatchSettings(size=32, context=1.1))
-    margin: int = 2
-    contour: ContourSettings = field(default_factory=ContourSettings)
-    rendered: int = 12000
-    synthetic: SyntheticSettings = field(default_factory=SyntheticSettings)
-    augment: AugmentSettings = field(
-        default_factory=lambda: AugmentSettings(
-            rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
-        )
-    )
-    negative: NegativeSettings = field(default_factory=NegativeSettings)
-    hiding: HidingSettings = field(default_factory=HidingSettings)
-
-    @property
-    def kept(self) -> PatchSettings:
-        """A patch with its margin."""
-        size = self.patch.size + 2 * self.margin
-        return PatchSettings(size, self.patch.context * size / self.patch.size)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Originals:
-    """What copies are made of. hands: labelled. backgrounds: pictures without hands. scenes: whole pictures."""
-
-    hands: Sequence[LabelledHand]
-    backgrounds: Sequence[Scene] = ()
-    scenes: Sequence[Scene] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,7 +38,7 @@ class PatchPool:
 
 
 class _Task(NamedTuple):
-    """kind: one of `_KINDS`. first, last: of what is drawn. turn: which time."""
+    """kind: one of `KINDS`. first, last: of what is drawn. turn: which time."""
 
     kind: str
     first: int
@@ -143,6 +93,20 @@ def make_pool(
     )
 
 
+def rows_without(
+    pool: PatchPool, sources: NDArray[np.str_], held_out: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Rows of the pool for a training that sees nothing of the held-out hands, bool (rows,).
+
+    sources, held_out: of the hands. Of a source with a held-out hand, no region without a hand is kept either, unless
+    every source has one.
+    """
+    touched = np.unique(sources[held_out])
+    if len(touched) == len(np.unique(sources)):
+        touched = touched[:0]
+    return np.where(pool.hands >= 0, ~held_out[pool.hands], ~np.isin(pool.sources, touched))
+
+
 def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
     def parts(kind: str, count: int, turns: int) -> list[_Task]:
         return [
@@ -181,9 +145,9 @@ def _draw(task: _Task) -> _Rows:
     if _worker is None:
         raise RuntimeError("the worker has nothing to draw from; call make_pool")
     originals, settings, seed = _worker
-    random = np.random.default_rng((seed, list(_KINDS).index(task.kind), task.turn, task.first))
+    random = np.random.default_rng((seed, list(KINDS).index(task.kind), task.turn, task.first))
     size, patches, tokens, sources = settings.kept, [], [], []
-    for sample in _KINDS[task.kind](originals, settings, task, random):
+    for sample in KINDS[task.kind](originals, settings, task.first, task.last, random):
         patches.append(cut_patch(sample.image, sample.box, sample.side, size))
         tokens.append(sample.token)
         sources.append(sample.source)
@@ -194,98 +158,3 @@ def _draw(task: _Task) -> _Rows:
         contours[:] = contour_vectors(np.ascontiguousarray(cut[:, inner, inner]), settings.contour)
     hands = range(task.first, task.last) if task.kind == "hands" else [-1] * len(cut)
     return _Rows(cut, contours, tokens, sources, list(hands))
-
-
-def _copies(
-    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
-) -> Iterator[TrainingSample]:
-    pictures = _behind(originals)
-    tokens = {hand.token for hand in originals.hands}
-    unmirrored = replace(settings.augment, mirror=0.0)
-    for hand in originals.hands[task.first : task.last]:
-        known = MIRRORED_TOKENS.get(hand.token, hand.token) in tokens
-        image, box, token = augment(hand, pictures, settings.augment if known else unmirrored, random)
-        yield TrainingSample(
-            image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
-        )
-
-
-def _behind(originals: Originals) -> list[Image]:
-    """What may stand behind a hand: water and rooms, or where there is neither, what stands behind other hands."""
-    scenes = [scene.image for scene in (*originals.backgrounds, *originals.scenes)]
-    return scenes or [one.image for one in originals.hands]
-
-
-def _hidden(
-    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
-) -> Iterator[TrainingSample]:
-    pictures = _behind(originals)
-    for hand in originals.hands[task.first : task.last]:
-        if random.random() < settings.hidden:
-            image, box, _ = augment(hand, pictures, settings.augment, random)
-            image, box = hide(image, box, pictures, settings.hiding, random)
-            yield TrainingSample(
-                image=image, box=box, side=hand.side, token=NONE, source=hand.source, original=False
-            )
-
-
-def _missed(
-    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
-) -> Iterator[TrainingSample]:
-    for hand in originals.hands[task.first : task.last]:
-        if random.random() < settings.negative.missed:
-            region = missed_hand(hand, settings.negative, random)
-            if region is not None:
-                yield _relit(region, settings, random)
-
-
-def _regions(
-    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
-) -> Iterator[TrainingSample]:
-    scenes = [*originals.backgrounds, *originals.scenes]
-    for number in range(task.first, task.last):
-        for region in negatives(scenes[number : number + 1], settings.negative, random):
-            if not scenes[number].hands:
-                # Water differs from picture to picture as people do from source to source, and weighs like them.
-                region = replace(region, source=f"{region.source} {number}")
-            yield _relit(region, settings, random)
-
-
-def _rendered(
-    originals: Originals, settings: PoolSettings, task: _Task, random: np.random.Generator
-) -> Iterator[TrainingSample]:
-    seed = int(random.integers(2**31))
-    tokens = {hand.token for hand in originals.hands}
-    for sample in synthetic_hands(task.last - task.first, seed, settings.synthetic, settings.augment):
-        if not tokens or sample.token in tokens:
-            yield sample
-
-
-_KINDS = {
-    "hands": _copies,
-    "missed": _missed,
-    "regions": _regions,
-    "rendered": _rendered,
-    "hidden": _hidden,
-}
-"""What is drawn, by kind; the place in this table seeds it."""
-
-
-def _relit(region: TrainingSample, settings: PoolSettings, random: np.random.Generator) -> TrainingSample:
-    """A region cut out with something around it and in other light."""
-    x, y, width, height = region.box
-    reach = max(width, height)
-    rows, columns = region.image.shape[:2]
-    left, top = max(0, x - reach), max(0, y - reach)
-    part = region.image[top : min(rows, y + height + reach), left : min(columns, x + width + reach)]
-    scale = min(1.0, 1.5 * settings.augment.canvas / max(part.shape[:2]))
-    if scale < 1.0:
-        part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8)
-    box = (
-        round((x - left) * scale),
-        round((y - top) * scale),
-        max(2, round(width * scale)),
-        max(2, round(height * scale)),
-    )
-    image = relight(part, None, settings.augment.light, random)
-    return replace(region, image=image, box=box, original=False)

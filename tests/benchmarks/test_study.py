@@ -13,7 +13,6 @@ from lightgesture.benchmarks.study_data import (
     held_out_subjects,
     open_study,
     rows_of_sources,
-    rows_without,
     training_of,
 )
 from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
@@ -22,7 +21,8 @@ from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
 from lightgesture.models import load_classifier
 from lightgesture.training import checkpoints
-from lightgesture.training.patch_pool import PatchPool, PoolSettings
+from lightgesture.training.patch_kinds import PoolSettings
+from lightgesture.training.patch_pool import PatchPool
 
 TOKENS = ("1", "5", "none")
 
@@ -83,18 +83,6 @@ def small_pool():
         sources,
         np.array([0, 1, 2, -1, -1]),
     )
-
-
-def test_nothing_of_a_held_out_source_is_trained_on():
-    sources = np.array(["a", "a", "b"])
-    held = np.array([True, True, False])
-    assert rows_without(small_pool(), sources, held).tolist() == [False, False, True, False, True]
-
-
-def test_of_a_person_held_out_neither_hands_nor_the_regions_of_the_source_are_trained_on():
-    sources = np.array(["a", "a", "b"])
-    held = np.array([True, False, False])
-    assert rows_without(small_pool(), sources, held).tolist() == [False, True, True, False, True]
 
 
 def test_few_sources_keep_what_shows_no_people():

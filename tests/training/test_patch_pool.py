@@ -9,7 +9,8 @@ from lightgesture.features.patch import PatchSettings
 from lightgesture.features.standardise import channel_tables
 from lightgesture.training.hand_samples import HandSamples, HandSampling, standardised
 from lightgesture.training.negatives import Scene
-from lightgesture.training.patch_pool import Originals, PoolSettings, make_pool
+from lightgesture.training.patch_kinds import Originals, PoolSettings
+from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.samples import LabelledHand
 
 SETTINGS = PoolSettings(copies=2, rounds=1, rendered=6, patch=PatchSettings(16, 1.1))
@@ -75,6 +76,35 @@ def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path)
     assert set(batch.truth.tolist()) == {0}
     same = samples.draw(np.random.default_rng(1), 300)
     np.testing.assert_array_equal(batch.patches, same.patches)
+
+
+def pool_of(sources, hands):
+    """Rows of the given sources that are copies of the given hands, -1: regions."""
+    count = len(sources)
+    tokens = np.array(["5" if hand >= 0 else "none" for hand in hands])
+    return PatchPool(
+        np.zeros((count, 4, 4, 3), np.uint8),
+        np.zeros((count, 2), np.float16),
+        tokens,
+        np.array(sources),
+        np.array(hands),
+    )
+
+
+@pytest.mark.parametrize(
+    ("sources", "held", "expected"),
+    [
+        (["a", "a", "b"], [True, True, False], [False, False, True, False, True]),
+        # A person held out: neither the hands nor the regions of the source.
+        (["a", "a", "b"], [True, False, False], [False, True, True, False, True]),
+        # A folder of one source, of which some hands are held out, keeps its regions.
+        (["a", "a", "a"], [True, False, False], [False, True, True, True, True]),
+    ],
+    ids=["source", "person", "one source"],
+)
+def test_nothing_of_what_is_held_out_is_trained_on(sources, held, expected):
+    pool = pool_of([*sources, "a", "water"], [0, 1, 2, -1, -1])
+    assert rows_without(pool, np.array(sources), np.array(held)).tolist() == expected
 
 
 def test_some_hands_are_hidden_and_called_none(originals, tmp_path):

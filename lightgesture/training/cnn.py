@@ -27,6 +27,7 @@ from lightgesture.training.negatives import read_backgrounds, read_scenes
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+from lightgesture.training.time_left import TimeLeft
 
 if TYPE_CHECKING:
     from lightgesture.training.hand_net import NetSettings
@@ -229,9 +230,11 @@ def _logits(held_out: HeldOut) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
 
 def _told(progress: Progress) -> Callable[[str, int, int], None]:
     """Every tenth of a step as a line."""
+    clocks: dict[str, TimeLeft] = {}
 
     def show(step: str, done: int, total: int) -> None:
+        left = clocks.setdefault(step, TimeLeft(total, done))
         if done * 10 // total > (done - 1) * 10 // total:
-            progress(f"{step}: {done} of {total}")
+            progress(f"{step}: {done} of {total}, {left.told(done)}")
 
     return show

@@ -12,6 +12,7 @@ import torch
 from torch import Tensor
 
 from lightgesture.results.atomic import replacing
+from lightgesture.training.time_left import TimeLeft
 from lightgesture.training.torch_network import TorchNetwork
 
 Batch = tuple[Mapping[str, Tensor], tuple[Tensor, ...]]
@@ -59,6 +60,7 @@ def train_net(
     groups = [{"params": decayed, "weight_decay": settings.decay}, {"params": plain, "weight_decay": 0.0}]
     optimiser = torch.optim.AdamW(groups, settings.rate)
     first = _resume(checkpoint, net, mean, optimiser)
+    left = TimeLeft(settings.steps, first)
     net.train()
     for step, (inputs, truth) in _ahead(batch, first, settings.steps, seed):
         for group in optimiser.param_groups:
@@ -71,7 +73,8 @@ def train_net(
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
         if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
             progress(
-                f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}"
+                f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}, "
+                f"{left.told(step + 1)}"
             )
             state = {"net": net.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict()}
             with replacing(checkpoint) as temporary:

@@ -1,0 +1,27 @@
+"""How long a training still takes, told from what it has done so far."""
+
+import time
+from collections.abc import Callable
+
+MINUTE_S = 60.0
+HOUR_S = 3600.0
+
+
+class TimeLeft:
+    """Of work in equal parts, from the pace since it was made."""
+
+    def __init__(self, total: int, done: int = 0, clock: Callable[[], float] = time.monotonic) -> None:
+        """total: parts in all. done: those that were there before, which tell nothing of the pace."""
+        self._total, self._first, self._clock = total, done, clock
+        self._start = clock()
+
+    def told(self, done: int) -> str:
+        """Such as "12 min left", from all parts done so far; "done" where none are left."""
+        if done >= self._total:
+            return "done"
+        if done <= self._first:
+            return "time left unknown"
+        seconds = (self._clock() - self._start) * (self._total - done) / (done - self._first)
+        if seconds >= HOUR_S:
+            return f"{seconds / HOUR_S:.1f} h left"
+        return f"{seconds / MINUTE_S:.0f} min left" if seconds >= MINUTE_S else f"{seconds:.0f} s left"

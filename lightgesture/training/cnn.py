@@ -58,9 +58,9 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 40000
+    steps: int = 30000
     teachers: int = 2
-    teacher_steps: int = 8000
+    teacher_steps: int = 10000
     precision: "Precision" = "float32"
     one_in: int = 12
     smallest_hand: int = 12

@@ -196,7 +196,7 @@ def run(args: argparse.Namespace) -> None:
         precision=args.precision,
     )
     study = open_study(find_data(args.data), Path(args.pool), training, say)
-    folder = Path(args.pool) / "studies" / args.kind
+    folder = Path(args.pool) / "studies"
     folder.mkdir(parents=True, exist_ok=True)
     tables = KINDS[args.kind](study, training, folder, args)
     print_and_write(tables, args.out, asdict(training))

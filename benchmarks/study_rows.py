@@ -31,15 +31,19 @@ Rows = list[dict[str, Cell]]
 def fit_row(
     study: Study, name: str, rows: Mask, held: Mask, training: CnnTraining, folder: Path
 ) -> dict[str, Cell]:
-    """Train a net on rows of the pool, in a folder of its own, and score it on the held-out hands and on val."""
+    """Train a net on rows of the pool and score it on the held-out hands and on val.
+
+    folder: of all trainings from this pool; each has one of its own there, so that rows of several studies that are the
+    same training are trained once.
+    """
     from lightgesture.features.network_nodes import multiply_adds
     from lightgesture.models.cnn import CnnClassifier
     from lightgesture.training.checkpoints import checkpoint_folder
 
-    request = {"training": repr(replace(training, jobs=1)), "rows": int(rows.sum()), "held": int(held.sum())}
-    # A training of other settings lies beside this one.
-    digest = sha256(repr(request).encode()).hexdigest()[:8]
-    parts = checkpoint_folder(folder / "_".join([*name.split(), digest]), request)
+    chosen = sha256(np.packbits(rows).tobytes()).hexdigest()
+    request = {"training": repr(replace(training, jobs=1)), "rows": chosen}
+    digest = sha256(repr(request).encode()).hexdigest()[:12]
+    parts = checkpoint_folder(folder / digest, request)
     model = fit(study.pool, rows, study.classes, training, parts, lambda text: say(f"{name}: {text}"))
     classifier = CnnClassifier(model)
     seen = np.unique(study.pool.sources[rows])

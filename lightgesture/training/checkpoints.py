@@ -1,6 +1,7 @@
 """What every training of a net needs: torch, a folder for what is done already, and its peak of memory."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 from lightgesture.errors import UsageError
@@ -17,10 +18,10 @@ def need_torch() -> None:
         ) from error
 
 
-def checkpoint_folder(out: Path, request: dict[str, object]) -> Path:
+def checkpoint_folder(out: Path, request: Mapping[str, object]) -> Path:
     """The folder of what is done; UsageError where it belongs to another training."""
     folder = out.with_suffix(".parts")
-    note, text = folder / "request.json", json.dumps(request, sort_keys=True)
+    note, text = folder / "request.json", json.dumps(dict(request), sort_keys=True)
     if note.exists() and note.read_text(encoding="utf-8") != text:
         raise UsageError(f"{folder}: holds parts of another training; remove it or give another --out")
     if not note.exists():

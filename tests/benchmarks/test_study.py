@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import reading_baselines, reading_study
+from lightgesture.benchmarks import reading_baselines, reading_study, study_rows
 from lightgesture.benchmarks.study_data import (
     held_out_subjects,
     open_study,
@@ -218,6 +218,33 @@ def test_each_alteration_has_a_pool_of_its_own(study_command, tmp_path):
     assert [training.pool.augment.mirror for *_, training in trained] == [0.5, 0.0]
     drawn_pools = sorted(path.parent.parent.name for path in tmp_path.rglob("studies/**/patches.json"))
     assert drawn_pools == ["everything", "no_mirror"]
+
+
+def test_the_same_training_of_two_studies_has_one_folder(drawn, training, tmp_path, monkeypatch):
+    class TrainedError(Exception):
+        pass
+
+    def told(_pool, _rows, _classes, _training, folder, _progress):
+        raise TrainedError(folder)
+
+    monkeypatch.setattr(study_rows, "fit", told)
+    study = open_study(drawn, tmp_path / "pool", training, lambda _: None)
+    every = np.ones(len(study.pool.hands), bool)
+    first, last = every.copy(), every.copy()
+    first[0], last[-1] = False, False
+    places = []
+    for name, rows, own in (
+        ("sizes", every, training),
+        ("sources", every, replace(training, jobs=2)),
+        ("fold 0", first, training),
+        ("fold 1", last, training),
+        ("other seed", every, replace(training, seed=1)),
+    ):
+        with pytest.raises(TrainedError) as place:
+            study_rows.fit_row(study, name, rows, np.zeros(len(study.hands), bool), own, tmp_path)
+        places.append(place.value.args[0])
+    assert places[0] == places[1]
+    assert len(set(places)) == 4
 
 
 @pytest.mark.slow

@@ -85,18 +85,22 @@ def _right(held_out: HeldOut, classes: Sequence[str]) -> NDArray[np.bool_]:
     return np.asarray(tokens.argmax(axis=1) == held_out.truth)
 
 
-def _mean(right: NDArray[np.bool_]) -> float | None:
+def _mean(right: NDArray[np.bool_] | NDArray[np.float64]) -> float | None:
     return round(float(right.mean()), 4) if len(right) else None
 
 
-THRESHOLDS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
+THRESHOLDS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
 """Least probabilities of a token at which a card tells what is kept and what is wrong."""
+COST_OF_WRONG = 10.0
+"""Refused hands that are as bad as one that is read wrongly: a refused sign is held a moment longer, a wrong one may
+move a vehicle near a person once it has lasted for a whole hold."""
 
 
 def operating_points(held_out: HeldOut, classes: Sequence[str]) -> list[dict[str, float | None]]:
     """For each threshold: the share of tokens that are read rightly, and of all hands those read as a wrong token.
 
-    Over originals and altered copies; a hand whose likeliest class is `none` is not read.
+    Over originals and altered copies; a hand whose likeliest class is `none` is not read. cost: of a hand, refused
+    tokens counted once and wrong ones `COST_OF_WRONG` times; where it is least, the threshold is worth the most.
     """
     best = held_out.probabilities.argmax(axis=1)
     likely = held_out.probabilities.max(axis=1)
@@ -106,12 +110,15 @@ def operating_points(held_out: HeldOut, classes: Sequence[str]) -> list[dict[str
     for threshold in THRESHOLDS:
         is_read = (likely >= threshold) & (names[best] != NONE)
         is_right = is_read & (best == held_out.truth)
+        is_wrong = is_read & ~is_right
+        cost = np.where(is_token & ~is_read, 1.0, 0.0) + COST_OF_WRONG * is_wrong
         points.append(
             {
                 "threshold": threshold,
                 "tokens_read_rightly": _mean(is_right[is_token]),
-                "hands_read_wrongly": _mean(is_read & ~is_right),
+                "hands_read_wrongly": _mean(is_wrong),
                 "none_read_as_a_token": _mean(is_read[~is_token]),
+                "cost": _mean(cost),
             }
         )
     return points

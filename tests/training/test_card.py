@@ -10,7 +10,7 @@ CLASSES = ("1", "5", "none")
 
 
 def held_out():
-    """Of four tokens: two read rightly, surely and hardly, one wrongly, one taken for none; a none taken for a token."""
+    """Of four tokens two are right, surely and hardly, one wrong, one taken for none; a none taken for a token."""
     rows = [[0.97, 0.02, 0.01], [0.3, 0.55, 0.15], [0.1, 0.85, 0.05], [0.2, 0.2, 0.6], [0.75, 0.05, 0.2]]
     return HeldOut(
         np.array(rows, np.float32),

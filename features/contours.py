@@ -7,6 +7,7 @@ direction of colour in which this hand differs from this room or water; Otsu's t
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -75,14 +76,12 @@ def segment(patch: NDArray[np.uint8], settings: ContourSettings | None = None) -
     levels = _hand_likeness(np.asarray(small, np.uint8), settings)
     binary = np.asarray(cv2.threshold(levels, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)[1], np.uint8)
     labels = np.asarray(cv2.connectedComponents(binary)[1])
-    in_the_middle = np.bincount(labels[_regions(settings)[0]], minlength=2)
+    in_the_middle = np.bincount(labels.reshape(-1)[_regions(settings).middle], minlength=2)
     in_the_middle[0] = 0
     chosen = int(in_the_middle.argmax())
-    return (
-        np.where(labels == chosen, 255, 0).astype(np.uint8)
-        if in_the_middle[chosen]
-        else np.zeros_like(binary)
-    )
+    if not in_the_middle[chosen]:
+        return np.zeros_like(binary)
+    return np.asarray(cv2.inRange(labels, chosen, chosen), np.uint8)
 
 
 def outline(mask: Mask) -> Contour | None:
@@ -139,33 +138,46 @@ def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:
     sector = np.floor(np.arctan2(offset[:, 1], offset[:, 0]) * (directions / (2 * np.pi)) + 0.5).astype(int)
     signature = np.zeros(directions)
     np.maximum.at(signature, sector % directions, np.hypot(offset[:, 0], offset[:, 1]) / np.sqrt(area))
-    neighbours = np.minimum(np.roll(signature, 1), np.roll(signature, -1))
-    return np.where(signature > 0, signature, neighbours)
+    around = np.concatenate([signature[-1:], signature, signature[:1]])
+    return np.where(signature > 0, signature, np.minimum(around[:-2], around[2:]))
 
 
 def _hand_likeness(patch: NDArray[np.uint8], settings: ContourSettings) -> NDArray[np.uint8]:
     """The patch along the colour direction in which its middle differs from its rim, stretched to 0 to 255."""
-    middle, rim, bump = _regions(settings)
-    colours = np.sqrt(patch.reshape(-1, 3).astype(np.float64) / 255.0)
-    inside, outside = colours[middle.reshape(-1)], colours[rim.reshape(-1)]
-    centre_in, centre_out = inside.mean(axis=0), outside.mean(axis=0)
-    scatter = _scatter(inside - centre_in) + _scatter(outside - centre_out)
+    regions = _regions(settings)
+    colours = np.asarray(cv2.LUT(patch, _square_roots()), np.float64).reshape(-1, 3)
+    centre_in, centre_out = regions.shares @ colours
+    # The scatter round both centres: the mean products less the products of the means.
+    scatter = (colours * regions.both).T @ colours
+    scatter -= np.outer(centre_in, centre_in) + np.outer(centre_out, centre_out)
     scatter += settings.evenness * np.eye(3)
-    values = colours @ np.linalg.solve(scatter, centre_in - centre_out)
-    deviation = values.std()
-    values = (values - values.mean()) / deviation if deviation > 1e-9 else np.zeros_like(values)
-    values = values.reshape(patch.shape[:2]) + settings.prior * bump
-    low, high = values.min(), values.max()
+    difference = (centre_in - centre_out)[:, None]
+    direction = np.asarray(cv2.solve(scatter, difference, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)
+    values = colours @ direction
+    mean, deviation = (float(number[0, 0]) for number in cv2.meanStdDev(values))
+    values = (values - mean) / deviation if deviation > 1e-9 else np.zeros_like(values)
+    values = values.reshape(patch.shape[:2]) + regions.bump
+    low, high = cv2.minMaxLoc(values)[:2]
     return np.asarray((values - low) * (255.0 / (high - low)), np.uint8)
 
 
-def _scatter(centred: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.asarray(centred.T @ centred / len(centred))
+@lru_cache(maxsize=1)
+def _square_roots() -> NDArray[np.float64]:
+    return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float64)
+
+
+class _Regions(NamedTuple):
+    """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (2, p), of each pixel in
+    the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`."""
+
+    middle: NDArray[np.intp]
+    shares: NDArray[np.float64]
+    both: NDArray[np.float64]
+    bump: NDArray[np.float64]
 
 
 @lru_cache(maxsize=4)
-def _regions(settings: ContourSettings) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.float64]]:
-    """Middle, rim and a bump of mean 0 and deviation 1, each (size, size)."""
+def _regions(settings: ContourSettings) -> _Regions:
     size = settings.size
     axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
     across, down = axis[None, :] / settings.middle_width, axis[:, None] / settings.middle_height
@@ -175,4 +187,10 @@ def _regions(settings: ContourSettings) -> tuple[NDArray[np.bool_], NDArray[np.b
     rim[:near] = True
     rim[: size * 3 // 4, :near] = rim[: size * 3 // 4, -near:] = True
     bump = np.exp(-(axis[None, :] ** 2) - axis[:, None] ** 2)
-    return middle, rim, (bump - bump.mean()) / bump.std()
+    shares = np.stack([region.reshape(-1) / region.sum() for region in (middle, rim)])
+    return _Regions(
+        np.flatnonzero(middle),
+        shares,
+        shares.sum(axis=0)[:, None],
+        settings.prior * (bump - bump.mean()) / bump.std(),
+    )

@@ -1,4 +1,4 @@
-"""Histograms of oriented gradients of a batch of patches, in NumPy.
+"""Histograms of oriented gradients of a batch of patches.
 
 Dalal and Triggs, "Histograms of Oriented Gradients for Human Detection", CVPR 2005: square-root compression,
 centred differences without smoothing, the channel with the strongest gradient at each pixel, votes shared
@@ -9,6 +9,7 @@ change gradients by a factor, and the blocks divide it out.
 from dataclasses import dataclass
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -54,7 +55,10 @@ def hog(patches: NDArray[np.uint8], settings: HogSettings | None = None) -> Floa
     count, size = patches.shape[:2]
     length = hog_length(size, settings)
     pooling = _pooling(size, settings.cell)
-    histograms = np.asarray(pooling @ _votes(patches, settings) @ pooling.T, np.float32)
+    cells = len(pooling)
+    votes = _votes(patches, settings).reshape(count, size, size * settings.bins)
+    rows = (pooling @ votes).reshape(count, cells, size, settings.bins)
+    histograms = np.asarray(pooling @ rows, np.float32)
     return _normalised_blocks(histograms, settings).reshape(count, length)
 
 
@@ -73,43 +77,59 @@ def _square_roots() -> Float:
 
 def _gradients(patches: NDArray[np.uint8]) -> tuple[Float, Float]:
     """Centred differences along x and y of the channel in which they are largest, float32 (n, size, size)."""
-    compressed = _square_roots()[np.moveaxis(patches, 3, 0)]
+    count, size, _, channels = patches.shape
+    planes = np.asarray(cv2.split(patches.reshape(count * size, size, channels)), np.uint8)
+    compressed = cv2.LUT(planes.reshape(-1, size), _square_roots()).reshape(channels, count, size, size)
     along_x, along_y = np.zeros_like(compressed), np.zeros_like(compressed)
     np.subtract(compressed[..., 2:], compressed[..., :-2], out=along_x[..., 1:-1])
     np.subtract(compressed[..., 2:, :], compressed[..., :-2, :], out=along_y[..., 1:-1, :])
     squared = along_x * along_x + along_y * along_y
     strongest_x, strongest_y, largest = along_x[0], along_y[0], squared[0]
-    for channel in range(1, len(squared)):
+    for channel in range(1, channels):
         stronger = squared[channel] > largest
-        strongest_x = np.where(stronger, along_x[channel], strongest_x)
-        strongest_y = np.where(stronger, along_y[channel], strongest_y)
-        largest = np.maximum(largest, squared[channel])
+        np.copyto(strongest_x, along_x[channel], where=stronger)
+        np.copyto(strongest_y, along_y[channel], where=stronger)
+        np.maximum(largest, squared[channel], out=largest)
     return strongest_x, strongest_y
 
 
 def _votes(patches: NDArray[np.uint8], settings: HogSettings) -> Float:
-    """Gradient magnitude shared between the two nearest directions, float32 (n, bins, size, size)."""
+    """Gradient magnitude shared between the two nearest directions, float32 (n, size, size, bins)."""
     along_x, along_y = _gradients(patches)
-    turn = np.float32(2.0 * np.pi if settings.signed else np.pi)
-    position = np.arctan2(along_y, along_x) * np.float32(settings.bins / turn)
-    position = np.where(position < 0, position + np.float32(settings.bins), position)
-    magnitude = np.sqrt(along_x * along_x + along_y * along_y)
-    bins = np.arange(settings.bins, dtype=np.float32)[:, None, None]
-    distance = np.abs(position[:, None] - bins)
-    np.minimum(distance, settings.bins - distance, out=distance)
-    votes = np.subtract(np.float32(1.0), distance, out=distance)
-    np.maximum(votes, np.float32(0.0), out=votes)
-    return np.asarray(np.multiply(votes, magnitude[:, None], out=votes), np.float32)
+    bins = settings.bins
+    position = np.arctan2(along_y, along_x).reshape(-1)
+    position *= np.float32(bins / (2.0 * np.pi if settings.signed else np.pi))
+    # Positive, so that cutting off the fraction rounds down; the bins of a turn more are the same bins.
+    position += np.float32(bins)
+    lower = position.astype(np.intp)
+    position -= lower
+    magnitude = np.sqrt(along_x * along_x + along_y * along_y).reshape(-1)
+    upper_share = magnitude * position
+    magnitude -= upper_share
+    votes = np.zeros(len(lower) * bins, np.float32)
+    first = np.arange(0, len(votes), bins)
+    turns = _turns(bins)
+    votes[first + turns[lower]] = magnitude
+    votes[first + turns[lower + 1]] += upper_share
+    return votes.reshape(*along_x.shape, bins)
 
 
-def _normalised_blocks(histograms: Float, settings: HogSettings) -> Float:
-    """L2-Hys of blocks of 2 × 2 cells, float32 (n, cells - 1, cells - 1, 2, 2, bins), from (n, bins, cells, cells)."""
-    cells = np.moveaxis(histograms, 1, -1)
-    top = np.stack([cells[:, :-1, :-1], cells[:, :-1, 1:]], axis=3)
-    bottom = np.stack([cells[:, 1:, :-1], cells[:, 1:, 1:]], axis=3)
-    blocks = np.stack([top, bottom], axis=3)
-    floor = np.float32(settings.floor)
-    norm = np.sqrt((blocks**2).sum(axis=(3, 4, 5), keepdims=True) + floor**2)
-    blocks = np.minimum(blocks / norm, np.float32(settings.clip))
-    norm = np.sqrt((blocks**2).sum(axis=(3, 4, 5), keepdims=True) + np.float32(1e-6))
-    return np.asarray(blocks / norm, np.float32)
+@lru_cache(maxsize=8)
+def _turns(bins: int) -> NDArray[np.intp]:
+    """The bin of each position from 0 to over two turns."""
+    return np.arange(2 * bins + 2) % bins
+
+
+def _normalised_blocks(cells: Float, settings: HogSettings) -> Float:
+    """L2-Hys of blocks of 2 × 2 cells, float32 (n, cells - 1, cells - 1, 2, 2, bins), from (n, cells, cells, bins)."""
+    energy = np.einsum("nijb,nijb->nij", cells, cells)
+    energy = energy[:, :-1, :-1] + energy[:, :-1, 1:] + energy[:, 1:, :-1] + energy[:, 1:, 1:]
+    scale = (np.float32(1.0) / np.sqrt(energy + np.float32(settings.floor**2)))[..., None]
+    blocks = np.empty((*energy.shape, 2, 2, cells.shape[-1]), np.float32)
+    for row, rows in enumerate((slice(None, -1), slice(1, None))):
+        for column, columns in enumerate((slice(None, -1), slice(1, None))):
+            np.multiply(cells[:, rows, columns], scale, out=blocks[..., row, column, :])
+    np.minimum(blocks, np.float32(settings.clip), out=blocks)
+    energy = np.einsum("nijrcb,nijrcb->nij", blocks, blocks)
+    blocks /= np.sqrt(energy + np.float32(1e-6))[..., None, None, None]
+    return blocks

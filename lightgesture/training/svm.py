@@ -12,8 +12,9 @@ from lightgesture._version import __version__
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import CLASSES
 from lightgesture.models.archive import write_file
+from lightgesture.models.projection import Progress
 from lightgesture.models.svm_file import SvmModel, write_svm_model
-from lightgesture.models.train_svm import HeldOut, Progress, SvmSettings, train_svm
+from lightgesture.models.train_svm import HeldOut, SvmSettings, train_svm
 from lightgesture.training.card import LIMITS, data_section, held_out_section
 from lightgesture.training.negatives import Scene, read_backgrounds, read_scenes
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows

@@ -55,6 +55,26 @@ def test_the_hand_is_found_whatever_the_light(hand: tuple[int, int, int], room: 
     assert (found & truth).sum() / (found | truth).sum() > 0.85
 
 
+def test_the_hand_is_cut_along_fishers_discriminant() -> None:
+    """The threshold is Otsu's on the levels that the definition gives, pixel by pixel."""
+    settings = ContourSettings(size=48)
+    patch = painted(drawn_hand(2, 48), (110, 140, 200), (140, 150, 120))
+    colours = np.sqrt(patch / 255.0)
+    down, across = np.meshgrid(*[(np.arange(48) + 0.5) / 24 - 1] * 2, indexing="ij")
+    middle = (across / settings.middle_width) ** 2 + (down / settings.middle_height) ** 2 < 1
+    rim = np.zeros((48, 48), bool)
+    rim[:5] = rim[:36, :5] = rim[:36, -5:] = True
+    inside, outside = colours[middle], colours[rim]
+    scatter = np.cov(inside.T, bias=True) + np.cov(outside.T, bias=True) + settings.evenness * np.eye(3)
+    values = colours @ np.linalg.solve(scatter, inside.mean(axis=0) - outside.mean(axis=0))
+    bump = np.exp(-(across**2) - down**2)
+    values = (values - values.mean()) / values.std() + settings.prior * (bump - bump.mean()) / bump.std()
+    levels = ((values - values.min()) * 255 / np.ptp(values)).astype(np.uint8)
+    labels = cv2.connectedComponents(cv2.threshold(levels, 0, 255, cv2.THRESH_OTSU)[1])[1]
+    hand = labels == np.bincount(labels[middle & (labels > 0)]).argmax()
+    assert np.array_equal(segment(patch, settings) > 0, hand)
+
+
 @given(st.integers(0, 255), st.integers(2, 96))
 def test_a_flat_patch_gives_finite_numbers(grey: int, size: int) -> None:
     vectors = contour_vectors(np.full((1, size, size, 3), grey, np.uint8))

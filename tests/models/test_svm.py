@@ -8,12 +8,12 @@ from sklearn.metrics.pairwise import rbf_kernel
 from sklearn.multiclass import OneVsRestClassifier
 from sklearn.svm import SVC
 
+from lightgesture.features.patch import cut_patch
 from lightgesture.features.vector import block_lengths, feature_vectors
 from lightgesture.models import TrainingSample, load_classifier
-from lightgesture.models import train_svm as training
 from lightgesture.models.svm import SvmClassifier, radial_kernel, softmax
 from lightgesture.models.svm_file import SvmModel
-from lightgesture.models.train_svm import SvmSettings, train_svm
+from lightgesture.models.train_svm import SvmSettings, sample_weights, train_svm
 
 Draw = Callable[[str, int], np.ndarray]
 
@@ -30,7 +30,7 @@ def test_the_kernel_is_scikit_learns() -> None:
 def test_scores_are_those_of_scikit_learns_svc(samples: list[TrainingSample], quick: SvmSettings) -> None:
     """One-against-rest machines of scikit-learn, put into a model, score the same to 1e-4."""
     model, _ = train_svm(samples, quick, classes=("1", "5", "none"))
-    patches = np.stack([training.cut_patch(s.image, s.box, s.side, quick.features.patch) for s in samples])
+    patches = np.stack([cut_patch(s.image, s.box, s.side, quick.features.patch) for s in samples])
     vectors = feature_vectors(patches, quick.features)
     points = SvmClassifier(model).project(vectors)
     truth = np.array([model.classes.index(sample.token) for sample in samples])
@@ -48,11 +48,11 @@ def test_training_is_ridge_regression_on_the_nystroem_features_of_scikit_learn(
 ) -> None:
     settings = replace(quick, centres=len(samples))
     model, _ = train_svm(samples, settings, classes=("1", "5", "none"))
-    patches = np.stack([training.cut_patch(s.image, s.box, s.side, quick.features.patch) for s in samples])
+    patches = np.stack([cut_patch(s.image, s.box, s.side, quick.features.patch) for s in samples])
     vectors = feature_vectors(patches, quick.features)
     points = SvmClassifier(model).project(vectors)
     truth = np.array([model.classes.index(sample.token) for sample in samples])
-    weights = training.sample_weights(truth, np.array([sample.source for sample in samples]))
+    weights = sample_weights(truth, np.array([sample.source for sample in samples]))
     # All samples as components: Nystroem then needs no random choice to agree with ours.
     features = Nystroem(kernel="rbf", gamma=model.gamma, n_components=len(points)).fit_transform(points)
     targets = np.where(truth[:, None] == np.arange(3), 1.0, -1.0)

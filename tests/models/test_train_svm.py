@@ -6,14 +6,9 @@ import pytest
 
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError, TrainingSample
+from lightgesture.models.calibration import fit_temperature
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.models.train_svm import (
-    SvmSettings,
-    assign_folds,
-    fit_temperature,
-    sample_weights,
-    train_svm,
-)
+from lightgesture.models.train_svm import SvmSettings, assign_folds, sample_weights, train_svm
 
 NAMES = ("1", "5", "none")
 

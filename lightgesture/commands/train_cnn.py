@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="larger nets that are learnt from; 0: learn from the labels alone (default: 2)",
     )
-    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 10000)")
+    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 8000)")
     parser.add_argument(
         "--precision",
         choices=PRECISIONS,

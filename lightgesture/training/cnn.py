@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from lightgesture.training.net_training import Precision
 
 Progress = Callable[[str], None]
+ORDERS = 1 << 20
+"""So many places in the order in which sources are kept from the net; names hardly ever share one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,7 @@ class CnnTraining:
     size: of the net, "small", "medium" or "large". contours: whether it looks at the outline's numbers, too.
     steps: of the optimiser. teachers: number of larger nets that it learns from, too, 0 for none. teacher_steps: of
     each of these. precision: in which nets are reckoned while they learn, see `net_training.PRECISIONS`.
-    one_in: of so many sources, one is kept from the net, for the temperature and the scores of the card.
+    one_in: of so many hands, one is kept from the net, for the temperature and the scores of the card; see `kept_out`.
     smallest_hand: longer side of the smallest box that is read, pixels. pool: what is drawn.
     """
 
@@ -60,7 +62,7 @@ class CnnTraining:
     contours: bool = False
     steps: int = 30000
     teachers: int = 2
-    teacher_steps: int = 10000
+    teacher_steps: int = 8000
     precision: "Precision" = "float32"
     one_in: int = 12
     smallest_hand: int = 12
@@ -76,7 +78,8 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     need_torch()
     started = time.monotonic()
     rows = [row for row in read_rows(training.data) if row.source not in training.without]
-    folder = checkpoint_folder(out, {"training": repr(replace(training, jobs=1)), "rows": len(rows)})
+    request = {"training": repr(replace(training, jobs=1)), "rows": len(rows), "version": __version__}
+    folder = checkpoint_folder(out, request)
     progress(f"reading {len(rows)} hands")
     originals = read_originals(training, rows)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, _told(progress))
@@ -88,7 +91,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     held_out = answers(model, originals, pool, kept)
     model = replace(model, temperature=fit_temperature(*_logits(held_out)))
     calibrated = replace(held_out, probabilities=softmax(held_out.probabilities, model.temperature))
-    card = make_card(training, rows, originals, model, calibrated)
+    card = make_card(training, rows, originals, kept, model, calibrated)
     card["training"]["seconds"] = round(time.monotonic() - started)
     card["training"]["peak_memory_mib"] = peak_memory_mib()
     write_cnn_model(model, out)
@@ -107,11 +110,28 @@ def read_originals(training: CnnTraining, rows: Sequence[HandRow]) -> Originals:
 
 
 def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
-    """Which hands are kept from the net, bool (n,): whole sources, or where those are few, one hand in so many."""
-    kept = np.array([fold_of(hand.source, one_in) == 0 for hand in hands])
-    if 0 < kept.mean() < 2.0 / one_in:
-        return kept
-    return np.asarray(np.arange(len(hands)) % one_in == 0)
+    """Which hands are kept from the net, bool (n,): whole sources that hold one hand in so many together.
+
+    Sources come in an order that their names give, so that a further one changes little; a source that is too large
+    is passed over. Where sources are so few or so large that less than half of that is found, one hand in so many is
+    kept, whoever's it is.
+    """
+    names, members, sizes = np.unique(
+        [hand.source for hand in hands], return_inverse=True, return_counts=True
+    )
+    room = len(hands) / one_in
+    kept = np.zeros(len(names), bool)
+    for place in sorted(range(len(names)), key=lambda place: fold_of(str(names[place]), ORDERS)):
+        kept[place] = sizes[kept].sum() + sizes[place] <= room
+    if sizes[kept].sum() < 0.5 * room:
+        return np.asarray(np.arange(len(hands)) % one_in == 0)
+    return np.asarray(kept[members.reshape(-1)])
+
+
+def keeps_whole_sources(hands: Sequence[LabelledHand], kept: NDArray[np.bool_]) -> bool:
+    """Whether no source has both hands that are kept from the net and others."""
+    sources = np.array([hand.source for hand in hands])
+    return not np.isin(sources[kept], sources[~kept]).any()
 
 
 def fit(
@@ -178,13 +198,19 @@ def answers(model: CnnModel, originals: Originals, pool: PatchPool, kept: NDArra
 
 
 def make_card(
-    training: CnnTraining, rows: Sequence[HandRow], originals: Originals, model: CnnModel, held_out: HeldOut
+    training: CnnTraining,
+    rows: Sequence[HandRow],
+    originals: Originals,
+    kept: NDArray[np.bool_],
+    model: CnnModel,
+    held_out: HeldOut,
 ) -> dict[str, Any]:
-    """The card of a trained net, ready for JSON."""
+    """The card of a trained net, ready for JSON. kept: hands that were kept from it, bool (n,)."""
     import torch
 
     from lightgesture.features.network_nodes import multiply_adds
 
+    whole = "whole sources" if keeps_whole_sources(originals.hands, kept) else "of every source some"
     return {
         "name": "cnn",
         "version": __version__,
@@ -210,7 +236,7 @@ def make_card(
             "steps": {"net": training.steps, "each_teacher": training.teacher_steps},
             "teachers": training.teachers,
             "settings": {"pool": asdict(training.pool), "net": asdict(net_settings(training))},
-            "kept_from_the_net": f"one in {training.one_in} sources, for the temperature and the scores below",
+            "kept_from_the_net": f"one hand in {training.one_in}, {whole}, for the temperature and the scores below",
             "torch": str(torch.__version__),
         },
         "model": {

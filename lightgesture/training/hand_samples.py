@@ -65,7 +65,11 @@ class HandSamples:
         self._rows = np.flatnonzero(chosen)
         index = {name: number for number, name in enumerate(classes)}
         self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
-        weights = sample_weights(self._truth, pool.sources[self._rows]).astype(np.float64)
+        # Beside the shapes that people show as no token, parts of hands and of rooms are a kind of their own.
+        beside = np.where(pool.hands[self._rows] >= 0, "", " beside")
+        weights = sample_weights(self._truth, np.char.add(pool.sources[self._rows], beside)).astype(
+            np.float64
+        )
         self._cumulative = np.cumsum(weights) / weights.sum()
 
     def __len__(self) -> int:

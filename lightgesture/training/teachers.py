@@ -12,6 +12,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
+from lightgesture.errors import UsageError
 from lightgesture.models.cnn import PATCH, SCORES
 from lightgesture.results.atomic import replacing
 from lightgesture.training.architectures import teacher_nodes
@@ -44,16 +45,23 @@ def teach(
             make_net(teacher_nodes(len(samples.classes)), samples.size, 0, seed + own) for own in range(count)
         ]
 
-        def answers(number: int) -> NDArray[np.float32]:
+        def taught_answers(number: int) -> NDArray[np.float32]:
             checkpoint = folder / f"teacher{number + 1}.pt"
             net = train_hand_net(nets[number], samples, None, settings, seed + number, checkpoint, progress)
             return answers_of(net, samples, settings)
 
         with ThreadPoolExecutor(max(1, min(jobs, count))) as pool:
-            total = sum(pool.map(answers, range(count)), np.zeros((len(samples), len(samples.classes))))
+            total = sum(
+                pool.map(taught_answers, range(count)), np.zeros((len(samples), len(samples.classes)))
+            )
         with replacing(path) as temporary, temporary.open("wb") as stream:
             np.save(stream, (total / count).astype(np.float16))
-    return np.asarray(np.load(path), np.float16)
+    answers = np.asarray(np.load(path), np.float16)
+    if answers.shape != (len(samples), len(samples.classes)):
+        raise UsageError(
+            f"{path}: holds answers about other patches; remove it and run the same command again"
+        )
+    return answers
 
 
 def answers_of(net: TorchNetwork, samples: HandSamples, settings: NetSettings) -> NDArray[np.float32]:

@@ -63,6 +63,18 @@ def test_teachers_that_learn_at_a_time_change_nothing(folder: Path, tmp_path: Pa
     assert answers.shape[1] == 3
 
 
+def test_answers_about_other_patches_are_refused(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, answers = tmp_path / "mine.npz", tmp_path / "mine.parts" / "answers.npy"
+    assert train(folder, out, "--quiet", "--teachers", "1") == 0
+    out.unlink()
+    np.save(answers, np.load(answers)[1:])
+    assert train(folder, out, "--quiet", "--teachers", "1") == 2
+    assert f"{answers}: holds answers about other patches" in capsys.readouterr().err
+    assert not out.exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "words"),
     [

@@ -1,0 +1,45 @@
+"""What is kept from a net: whole sources where that can be, and about as much as was asked for."""
+
+import numpy as np
+import pytest
+
+from lightgesture.training.cnn import keeps_whole_sources, kept_out
+from lightgesture.training.samples import LabelledHand
+
+PICTURE = np.zeros((4, 4, 3), np.uint8)
+
+
+def hands_of(sizes):
+    return [
+        LabelledHand(PICTURE, (0, 0, 4, 4), "left", "5", source, None)
+        for source, size in sizes.items()
+        for _ in range(size)
+    ]
+
+
+def test_whole_sources_are_kept_and_no_large_one_takes_their_place():
+    hands = hands_of({f"person {number}": 5 for number in range(40)} | {"collection": 150})
+    kept = kept_out(hands, 10)
+    assert keeps_whole_sources(hands, kept)
+    assert 0.05 <= kept.mean() <= 0.1
+    assert "collection" not in {hand.source for hand, is_kept in zip(hands, kept, strict=True) if is_kept}
+
+
+def test_a_further_source_changes_little():
+    sizes = {f"person {number}": 5 for number in range(100)}
+    before = hands_of(sizes)
+    after = hands_of(sizes | {"newcomer": 5})
+
+    def names(hands):
+        kept = kept_out(hands, 10)
+        return {hand.source for hand, is_kept in zip(hands, kept, strict=True) if is_kept}
+
+    assert len(names(before) ^ names(after)) <= 2
+
+
+@pytest.mark.parametrize("sizes", [{"one": 60}, {"one": 60, "two": 60}])
+def test_of_few_sources_some_hands_each_are_kept(sizes):
+    hands = hands_of(sizes)
+    kept = kept_out(hands, 12)
+    assert kept.sum() == len(hands) // 12
+    assert not keeps_whole_sources(hands, kept)

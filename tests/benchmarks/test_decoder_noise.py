@@ -8,11 +8,10 @@ import pytest
 
 from lightgesture.benchmarks.decoder_latency import (
     ACCEPTING,
-    edges,
+    arguments,
     measure,
     our_step,
     recorded,
-    transitions_step,
 )
 from lightgesture.benchmarks.decoder_noise import (
     RULES,
@@ -23,6 +22,7 @@ from lightgesture.benchmarks.decoder_noise import (
     sign,
     wrong_bound,
 )
+from lightgesture.benchmarks.decoder_peers import edges, transitions_step
 from lightgesture.fsm import load_grammar
 
 GRAMMAR = load_grammar()
@@ -81,7 +81,7 @@ def test_the_bound_grows_with_share_and_burst():
 def test_recorded_frames_make_the_words_where_they_say():
     step = our_step(GRAMMAR)
     frames = recorded()
-    types = [{event.type for event in step(shown, index)} for index, shown in enumerate(frames)]
+    types = [{event.type for event in step(*arguments(shown, index))} for index, shown in enumerate(frames)]
     assert [index for index, found in enumerate(types) if "word" in found] == [
         index for index, shown in enumerate(frames) if shown.kind == ACCEPTING
     ]
@@ -94,9 +94,12 @@ def test_latency_tables_have_every_kind_of_frame():
     assert throughput.rows[0]["frames"] == len(recorded())
 
 
-def test_a_library_runs_the_same_grammar():
+@pytest.mark.parametrize("always", [True, False])
+def test_a_library_moves_where_the_decoder_reads_words(always):
     pytest.importorskip("transitions")
-    step = transitions_step(GRAMMAR)
-    moves = [index for index, shown in enumerate(recorded()) if step(shown, index)]
-    assert moves == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    step, ours = transitions_step(GRAMMAR, always), our_step(GRAMMAR)
+    given = [arguments(shown, index) for index, shown in enumerate(recorded())]
+    words = [index for index, frame in enumerate(given) if any(e.type == "word" for e in ours(*frame))]
+    assert words == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    assert [index for index, frame in enumerate(given) if step(*frame)] == words
     assert len(list(edges(GRAMMAR))) == sum(map(len, GRAMMAR.table.transitions))

@@ -25,7 +25,7 @@ class Decoder:
     events. ValueError: a hold out of range, or both.
     """
 
-    __slots__ = ("_dwell", "_reader", "_reporter", "_timeline", "_timeout_s", "_unread")
+    __slots__ = ("_count_hidden", "_dwell", "_reader", "_reporter", "_timeline", "_timeout_s", "_unread")
 
     def __init__(
         self,
@@ -39,6 +39,7 @@ class Decoder:
         self._unread = UnreadSigning(
             grammar.dwell.unread * self._dwell.need, self._dwell.release, grammar.dwell.passage_s
         )
+        self._count_hidden = grammar.dwell.count_hidden
         self._timeline = Timeline()
         self._timeout_s = grammar.dwell.timeout_s
         self._reporter = Reporter(source, self._timeline)
@@ -106,10 +107,12 @@ class Decoder:
         elif sentence is not None and (pair is None or pair != dwell.spent):
             is_left = left is not None if left_seen is None else left_seen
             is_right = right is not None if right_seen is None else right_seen
-            if (is_left or is_right) and self._unread.process(pair, dwell.step, now_s - before_s):
+            is_counted = is_left or is_right or self._count_hidden
+            if is_counted and self._unread.process(pair, dwell.step, now_s - before_s):
                 self._miss()
-        if dwell.pair is not None or reporter.is_growth_shown:
-            self._show_growth(now_s)
+        is_worth_showing = dwell.pair is not None or reporter.is_growth_shown
+        if is_worth_showing and now_s - reporter.shown_s >= DISPLAY_INTERVAL_S:
+            self._show_growth()
         return events
 
     def finish(self) -> list[Event]:
@@ -127,10 +130,8 @@ class Decoder:
         detail = f"a sign after {self.sentence} was not read; sign the sentence again"
         self._reader.drop("unread_sign", detail)
 
-    def _show_growth(self, now_s: float) -> None:
+    def _show_growth(self) -> None:
         """A display follows the hold, and learns that it broke off, at most five times a second."""
-        if now_s - self._reporter.shown_s < DISPLAY_INTERVAL_S:
-            return
         reader, pair = self._reader, self._dwell.pair
         growth: Growth | None = None
         if pair is not None:

@@ -175,5 +175,7 @@ class Reader:
         sentence = self.sentence
         if sentence is None:
             self._reporter.state(IDLE, "", growth)
+        elif sentence.complete is None:
+            self._reporter.state(COLLECTING, sentence.text, growth)
         else:
-            self._reporter.state(self.state, sentence.text, growth)
+            self._reporter.state(CONFIRMING, sentence.text, growth)

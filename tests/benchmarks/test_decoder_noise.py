@@ -13,16 +13,17 @@ from lightgesture.benchmarks.decoder_latency import (
     our_step,
     recorded,
 )
-from lightgesture.benchmarks.decoder_noise import (
+from lightgesture.benchmarks.decoder_noise import wrong_bound
+from lightgesture.benchmarks.decoder_peers import edges, transitions_step
+from lightgesture.benchmarks.decoder_signing import (
+    HIDDEN_RULES,
     RULES,
     SENTENCES,
     Hand,
     NoiseSettings,
     Outcome,
     sign,
-    wrong_bound,
 )
-from lightgesture.benchmarks.decoder_peers import edges, transitions_step
 from lightgesture.fsm import load_grammar
 
 GRAMMAR = load_grammar()
@@ -56,14 +57,29 @@ def test_half_of_the_wrong_frames_are_unread():
 def test_lost_signs_are_what_the_rule_is_for():
     """With the rule off, bursts of misreadings lose digits; with it, none of the same sentences comes out wrong."""
     found = {}
-    for rule in (RULES[0], RULES[-1]):
+    rules = {rule.name: rule for rule in RULES}
+    for rule in (rules["frames, 15"], rules["frames, 15, signs may get lost"]):
         outcome = Outcome()
         for turn in range(60):
             rng = random.Random(turn)
             sign("STOP HOVER 35 GO", rule, GRAMMAR, 0.06, 3.0, SETTINGS, rng, outcome)
         found[rule.name] = outcome
-    assert found[RULES[-1].name].wrong > 0
-    assert found[RULES[0].name].wrong == 0
+    assert found["frames, 15, signs may get lost"].wrong > 0
+    assert found["frames, 15"].wrong == 0
+
+
+def test_hidden_signs_are_dropped_where_they_count_and_pauses_too():
+    found = {}
+    for rule in HIDDEN_RULES[:2]:
+        for what in (replace(SETTINGS, hidden=0.3), replace(SETTINGS, pauses=0.5)):
+            outcome = Outcome()
+            for turn in range(24):
+                sign("STOP HOVER 5 GO", rule, GRAMMAR, 0.0, 1.0, what, random.Random(turn), outcome)
+            found[rule.count_hidden, what.hidden] = outcome
+    assert found[False, 0.3].wrong > 0
+    assert found[True, 0.3].wrong == 0
+    assert found[False, 0.0].right == 24
+    assert found[True, 0.0].right < 24
 
 
 def test_the_bound_grows_with_share_and_burst():

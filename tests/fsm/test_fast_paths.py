@@ -168,7 +168,8 @@ def test_shares_are_shortened_to_four_decimals(share):
 
 
 @pytest.mark.parametrize(
-    ("share", "short"), [(0.0, 0.0), (1.0, 1.0), (2 / 3, 0.6667), (-0.123449, -0.1234), (1.23456, 1.2346)]
+    ("share", "short"),
+    [(0.0, 0.0), (1.0, 1.0), (2 / 3, 0.6667), (0.03125, 0.0313), (-0.123449, -0.1234), (1.23456, 1.2346)],
 )
 def test_short_shares(share, short):
     assert shorten(share) == short

@@ -1,5 +1,7 @@
 """Bounds themselves, and corners of forms that no sentence of the bundled grammar reaches."""
 
+import re
+
 import pytest
 
 from lightgesture.fsm import table
@@ -48,3 +50,17 @@ def test_what_stands_before_and_after_a_repetition_is_an_argument():
     (form,), compiled_table = compiled("STOP A P n {B} END GO")
     arguments = bind(form, ["STOP", "A", "P 2", "B", "B", "END", "GO"], compiled_table)
     assert (arguments.action, arguments.parameter, arguments.change) == ("A", 2, None)
+
+
+def test_forms_that_read_the_same_are_all_named_or_refused():
+    sentences = ["STOP A GO", "STOP A|B GO", "STOP A|END GO"]
+    forms = [parse_form("x", sentence, WORDS) for sentence in sentences]
+    with pytest.raises(FormError, match=re.escape("'STOP A GO' and 'STOP A|B GO' read the same")):
+        compile_table(forms, WORDS)
+    ambiguous = []
+    found = compile_table(forms, WORDS, ambiguous)
+    assert [(one.sentence, other.sentence) for one, other in ambiguous] == [
+        ("STOP A GO", "STOP A|B GO"),
+        ("STOP A GO", "STOP A|END GO"),
+    ]
+    assert {form.sentence for form in found.accepting.values()} == set(sentences)

@@ -8,9 +8,10 @@ wrong frames delay a sign and do not break it.
 """
 
 import math
-from typing import NamedTuple
+from dataclasses import dataclass
 
 from lightgesture.fsm.events import Pair
+from lightgesture.fsm.quick import quick
 from lightgesture.fsm.settings import DwellSettings
 
 FRAMES, EVIDENCE = "frames", "evidence"
@@ -26,7 +27,8 @@ DOUBT = 1.0
 """What a frame without a pair takes from the evidence, as a probability: hands that left speak for no sign at all."""
 
 
-class Hold(NamedTuple):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hold:
     """A pair that was held. frames: sightings of it; confidence: their mean, 0 to 1; first_*: the first one's."""
 
     pair: Pair
@@ -34,6 +36,9 @@ class Hold(NamedTuple):
     confidence: float
     first_frame: int
     first_time_s: float
+
+
+_make_hold = quick(Hold)
 
 
 def release_frames(hold: int, fraction: float) -> int:
@@ -109,24 +114,33 @@ class Dwell:
         """The hold that became long enough in this frame, else None. now_s: seconds that never run back."""
         if self.timed:
             self._keep_time(now_s)
-        if self.spent is not None and self._is_unreleased(pair, confidence):
-            return None
+        if self.spent is not None:
+            if pair == self.spent:
+                self._hold_on(confidence)
+                return None
+            self._be_absent()
         if pair is None:
-            self._weaken(DOUBT)
+            if self.pair is not None:
+                self._weaken(DOUBT)
             return None
         if pair == self.pair:
             self._extent += self.step * confidence if self._weighed else self.step
             self._frames += 1
             self._confidence_sum += confidence
         else:
-            self._weaken(confidence)
             if self.pair is not None:
-                return None
+                self._weaken(confidence)
+                if self.pair is not None:
+                    return None
             self._begin(pair, confidence, frame, time_s)
         if self._extent < self._need:
             return None
-        hold = Hold(
-            pair, self._frames, self._confidence_sum / self._frames, self._first_frame, self._first_time_s
+        hold = _make_hold(
+            pair=pair,
+            frames=self._frames,
+            confidence=self._confidence_sum / self._frames,
+            first_frame=self._first_frame,
+            first_time_s=self._first_time_s,
         )
         self._spend(pair)
         return hold
@@ -148,18 +162,20 @@ class Dwell:
             step = 0.0
         self.step = step
 
-    def _is_unreleased(self, pair: Pair | None, confidence: float) -> bool:
-        """Whether the pair is still the one that was read. In a run its absence must be unbroken; evidence weighs."""
-        if pair == self.spent:
+    def _hold_on(self, confidence: float) -> None:
+        """The pair that was read is still there. In a run its absence must be unbroken; evidence weighs."""
+        if self._is_absent:
             self._absent = max(0.0, self._absent - self.step * confidence) if self._weighed else 0.0
             self._is_absent = self._absent > 0.0
+        if self.pair is not None:
             self._weaken(confidence)
-            return True
+
+    def _be_absent(self) -> None:
+        """The pair that was read is not there; for long enough, and it may be read again."""
         self._absent += self.step if self._is_absent or self._weighed else self._start
         self._is_absent = True
         if self._absent >= self.release:
             self.spent = None
-        return False
 
     def _weaken(self, confidence: float) -> None:
         """A frame speaks against the growing hold."""

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 NUMBER_SLOTS = ("seconds", "program", "times")
@@ -13,6 +14,9 @@ MENU, SELECT = "MENU", "SELECT"
 
 MAX_ITEMS = 64
 """Most places of a form, so that a hostile file takes neither long nor much memory."""
+
+CACHED_WORDS = 1024
+"""Words of which it is kept what they are: a few grammars' worth."""
 
 _CARRIED = "n"
 _DIGIT = re.compile(r"[0-9]")
@@ -85,11 +89,13 @@ class Form:
         return self.repeated is not None and self.repeated[0] <= item < self.repeated[1]
 
 
+@lru_cache(maxsize=CACHED_WORDS)
 def is_digit(word: str) -> bool:
     """Whether the word is one of "0" to "9"."""
     return _DIGIT.fullmatch(word) is not None
 
 
+@lru_cache(maxsize=CACHED_WORDS)
 def split_carrier(word: str) -> tuple[str, int | None]:
     """("PARAM", 3) for a word that carries a number, such as "PARAM 3"; (word, None) for any other."""
     match = _CARRIER.fullmatch(word)

@@ -168,6 +168,7 @@ class DwellTable(_Table):
     release: float = Field(default=_DWELL.release, gt=0, le=1, allow_inf_nan=False)
     unread: float = Field(default=_DWELL.unread, gt=0, le=MAX_UNREAD, allow_inf_nan=False)
     passage_s: float = Field(default=_DWELL.passage_s, ge=0, le=MAX_PASSAGE_S, allow_inf_nan=False)
+    count_hidden: bool = _DWELL.count_hidden
     timeout_s: float = Field(default=_DWELL.timeout_s, gt=0, le=MAX_TIMEOUT_S, allow_inf_nan=False)
 
 

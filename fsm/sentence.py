@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import Form, is_digit, spell, split_carrier
+from lightgesture.fsm.forms import Form, is_digit, split_carrier
 from lightgesture.fsm.grammar import Grammar
 from lightgesture.fsm.settings import Control
 from lightgesture.fsm.table import Arguments
@@ -15,9 +15,10 @@ class Sentence:
     """An open sentence.
 
     state: of the grammar's table. touched_s: when its last word was accepted, seconds of the decoder's
-    timeline. digits: length of the number that is being signed. confidence: the lowest of its words'.
+    timeline. digits: length of the number that is being signed, 0 outside one. number: that number; before_number:
+    the text before it. confidence: the lowest of its words'.
     complete: the form that it has, once it is complete and waits to be confirmed. text: the words so far, digits
-    joined. has_unknown: a pair was held in it that is no word.
+    joined, as `spell` gives them. has_unknown: a pair was held in it that is no word.
     """
 
     start_frame: int
@@ -30,18 +31,31 @@ class Sentence:
     complete: Form | None = None
     text: str = ""
     has_unknown: bool = False
+    number: str = ""
+    before_number: str = ""
 
     def add(self, word: str, hold: Hold, state: int, now_s: float, join: str | None) -> None:
         """Take in a word that has its place."""
         self.words.append(word)
         self.state = state
         self.touched_s = now_s
-        self.confidence = min(self.confidence, hold.confidence)
+        if hold.confidence < self.confidence:
+            self.confidence = hold.confidence
         if is_digit(word):
-            self.digits += 1
-        elif word != join:
+            self._add_digit(word)
+            return
+        if word != join:
             self.digits = 0
-        self.text = spell(self.words, join)
+        self.text = f"{self.text} {word}" if self.text else word
+
+    def _add_digit(self, digit: str) -> None:
+        """The number that is being signed goes on, whether or not its digits are joined, or begins."""
+        if self.digits == 0:
+            self.before_number = self.text
+            self.number = ""
+        self.digits += 1
+        self.number = (self.number + digit).lstrip("0") or "0"
+        self.text = f"{self.before_number} {self.number}"
 
 
 def objection(arguments: Arguments, grammar: Grammar) -> tuple[str, str] | None:
@@ -63,7 +77,7 @@ def needs_confirmation(form: Form, sentence: Sentence, control: Control) -> bool
     """Whether a complete sentence waits for a second end word."""
     if form.confirm or (sentence.has_unknown and control.confirm_unknown):
         return True
-    return any(
+    return bool(control.confirm) and any(
         word in control.confirm or split_carrier(word)[0] in control.confirm for word in sentence.words
     )
 

@@ -34,7 +34,8 @@ class DwellSettings:
     absent before it counts again; less lets a flicker double a word. unread: how long, as a multiple of the hold, hands
     may be seen between two words without a word: more loses a sentence less often, and a sign of it more often. It must
     be less than a hold and two passages from sign to sign, and more than one passage. passage_s: seconds that they
-    may be seen in any case, 0 to 10: the longest passage, for holds that are shorter.
+    may be seen in any case, 0 to 10: the longest passage, for holds that are shorter. count_hidden: whether time
+    without a hand in view counts as well, for it may hide a sign; hands may then not be lowered inside a sentence.
     timeout_s: seconds without an accepted word that drop an open sentence.
     """
 
@@ -44,6 +45,7 @@ class DwellSettings:
     release: float = 0.2
     unread: float = 1.2
     passage_s: float = 0.5
+    count_hidden: bool = False
     timeout_s: float = 20.0
 
 

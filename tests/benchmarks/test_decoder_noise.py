@@ -8,20 +8,21 @@ import pytest
 
 from lightgesture.benchmarks.decoder_latency import (
     ACCEPTING,
-    edges,
+    arguments,
     measure,
     our_step,
     recorded,
-    transitions_step,
 )
-from lightgesture.benchmarks.decoder_noise import (
+from lightgesture.benchmarks.decoder_noise import wrong_bound
+from lightgesture.benchmarks.decoder_peers import edges, transitions_step
+from lightgesture.benchmarks.decoder_signing import (
+    HIDDEN_RULES,
     RULES,
     SENTENCES,
     Hand,
     NoiseSettings,
     Outcome,
     sign,
-    wrong_bound,
 )
 from lightgesture.fsm import load_grammar
 
@@ -56,14 +57,29 @@ def test_half_of_the_wrong_frames_are_unread():
 def test_lost_signs_are_what_the_rule_is_for():
     """With the rule off, bursts of misreadings lose digits; with it, none of the same sentences comes out wrong."""
     found = {}
-    for rule in (RULES[0], RULES[-1]):
+    rules = {rule.name: rule for rule in RULES}
+    for rule in (rules["frames, 15"], rules["frames, 15, signs may get lost"]):
         outcome = Outcome()
         for turn in range(60):
             rng = random.Random(turn)
             sign("STOP HOVER 35 GO", rule, GRAMMAR, 0.06, 3.0, SETTINGS, rng, outcome)
         found[rule.name] = outcome
-    assert found[RULES[-1].name].wrong > 0
-    assert found[RULES[0].name].wrong == 0
+    assert found["frames, 15, signs may get lost"].wrong > 0
+    assert found["frames, 15"].wrong == 0
+
+
+def test_hidden_signs_are_dropped_where_they_count_and_pauses_too():
+    found = {}
+    for rule in HIDDEN_RULES[:2]:
+        for what in (replace(SETTINGS, hidden=0.3), replace(SETTINGS, pauses=0.5)):
+            outcome = Outcome()
+            for turn in range(24):
+                sign("STOP HOVER 5 GO", rule, GRAMMAR, 0.0, 1.0, what, random.Random(turn), outcome)
+            found[rule.count_hidden, what.hidden] = outcome
+    assert found[False, 0.3].wrong > 0
+    assert found[True, 0.3].wrong == 0
+    assert found[False, 0.0].right == 24
+    assert found[True, 0.0].right < 24
 
 
 def test_the_bound_grows_with_share_and_burst():
@@ -81,7 +97,7 @@ def test_the_bound_grows_with_share_and_burst():
 def test_recorded_frames_make_the_words_where_they_say():
     step = our_step(GRAMMAR)
     frames = recorded()
-    types = [{event.type for event in step(shown, index)} for index, shown in enumerate(frames)]
+    types = [{event.type for event in step(*arguments(shown, index))} for index, shown in enumerate(frames)]
     assert [index for index, found in enumerate(types) if "word" in found] == [
         index for index, shown in enumerate(frames) if shown.kind == ACCEPTING
     ]
@@ -94,9 +110,12 @@ def test_latency_tables_have_every_kind_of_frame():
     assert throughput.rows[0]["frames"] == len(recorded())
 
 
-def test_a_library_runs_the_same_grammar():
+@pytest.mark.parametrize("always", [True, False])
+def test_a_library_moves_where_the_decoder_reads_words(always):
     pytest.importorskip("transitions")
-    step = transitions_step(GRAMMAR)
-    moves = [index for index, shown in enumerate(recorded()) if step(shown, index)]
-    assert moves == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    step, ours = transitions_step(GRAMMAR, always), our_step(GRAMMAR)
+    given = [arguments(shown, index) for index, shown in enumerate(recorded())]
+    words = [index for index, frame in enumerate(given) if any(e.type == "word" for e in ours(*frame))]
+    assert words == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    assert [index for index, frame in enumerate(given) if step(*frame)] == words
     assert len(list(edges(GRAMMAR))) == sum(map(len, GRAMMAR.table.transitions))

@@ -120,7 +120,7 @@ def test_missing_file_and_folder(tmp_path):
         (
             "hold = 15",
             "zzz = 15",
-            "dwell.zzz: unknown key; use rule, hold, hold_seconds, release, unread, passage_s",
+            "dwell.zzz: unknown key; use rule, hold, hold_seconds, release, unread, passage_s, count_hidden",
         ),
         ("[programs]", "[program]", "program: unknown key; did you mean 'programs'?"),
         ('kind = "task"', 'kind = "task"\nx = 1', "forms[0].x: unknown key; use kind, sentence"),

@@ -98,6 +98,27 @@ def test_hands_out_of_view_are_no_sign(grammar, words_to_pairs, pick):
     assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]
 
 
+@pytest.mark.parametrize("rule", ["frames", "seconds", "evidence"])
+@pytest.mark.parametrize("lost", [(), (2,), (4,), (3, 4), (2, 3, 4)])
+def test_a_grammar_may_count_hidden_signs_too(write_grammar, words_to_pairs, pick, rule, lost):
+    language = load_grammar(
+        write_grammar(
+            ('rule = "frames"', f'rule = "{rule}"'), ("count_hidden = false", "count_hidden = true")
+        )
+    )
+    events = sign(Decoder(language), words_to_pairs, SIGNED, lost, "out of view" if lost else "read")
+    assert pick(events, "instruction", field="text") == ([] if lost else ["STOP HOVER 35 GO"])
+    assert pick(events, "rejected", field="reason") == (["unread_sign"] if lost else [])
+
+
+def test_hidden_time_adds_to_unread_time(write_grammar):
+    """A sign of which something hides one half and nobody can read the other."""
+    language = load_grammar(write_grammar(("count_hidden = false", "count_hidden = true")))
+    halves = [(None, None, {"left_seen": True}), (None, None, {})]
+    assert frames_until_dropped(open_sentence(language), *halves) == 4
+    assert frames_until_dropped(open_sentence(load_grammar()), *halves) == 8
+
+
 def test_the_last_word_held_on_is_no_new_sign(grammar, words_to_pairs, pick):
     events = sign(Decoder(grammar), words_to_pairs, "STOP HOVER GO", how="read", held=200)
     assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]

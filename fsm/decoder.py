@@ -3,13 +3,10 @@
 from lightgesture.fsm.dwell import make_dwell
 from lightgesture.fsm.events import Event, Growth
 from lightgesture.fsm.grammar import Grammar
-from lightgesture.fsm.quick import quick
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import DISPLAY_INTERVAL_S, Reporter, shorten
 from lightgesture.fsm.timeline import Timeline
 from lightgesture.fsm.unread import UnreadSigning
-
-_make_growth = quick(Growth)
 
 
 class Decoder:
@@ -136,5 +133,5 @@ class Decoder:
         growth: Growth | None = None
         if pair is not None:
             progress = shorten(self._dwell.progress)
-            growth = _make_growth(pair=pair, word=reader.words.get(pair), progress=progress)
+            growth = Growth(pair=pair, word=reader.words.get(pair), progress=progress)
         reader.show(growth)

@@ -11,7 +11,6 @@ import math
 from dataclasses import dataclass
 
 from lightgesture.fsm.events import Pair
-from lightgesture.fsm.quick import quick
 from lightgesture.fsm.settings import DwellSettings
 
 FRAMES, EVIDENCE = "frames", "evidence"
@@ -36,9 +35,6 @@ class Hold:
     confidence: float
     first_frame: int
     first_time_s: float
-
-
-_make_hold = quick(Hold)
 
 
 def release_frames(hold: int, fraction: float) -> int:
@@ -135,7 +131,7 @@ class Dwell:
             self._begin(pair, confidence, frame, time_s)
         if self._extent < self._need:
             return None
-        hold = _make_hold(
+        hold = Hold(
             pair=pair,
             frames=self._frames,
             confidence=self._confidence_sum / self._frames,

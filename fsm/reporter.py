@@ -5,7 +5,6 @@ import math
 from lightgesture.fsm.dwell import Hold
 from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
 from lightgesture.fsm.forms import Form
-from lightgesture.fsm.quick import quick
 from lightgesture.fsm.sentence import Sentence
 from lightgesture.fsm.table import Arguments
 from lightgesture.fsm.timeline import Timeline
@@ -17,10 +16,6 @@ DECIMALS = 4
 """Decimals of confidences and progress in the events."""
 
 _SCALE = 10.0**DECIMALS
-
-_make_word = quick(Word)
-_make_instruction = quick(Instruction)
-_make_state = quick(State)
 
 
 def shorten(share: float) -> float:
@@ -45,7 +40,7 @@ class Reporter:
     def word(self, hold: Hold, word: str, state: str) -> None:
         """A sign has its place; state: the sentence so far, or "idle"."""
         self.events.append(
-            _make_word(
+            Word(
                 source=self._source,
                 frame=self.frame,
                 time_s=self._timeline.time_s,
@@ -59,7 +54,7 @@ class Reporter:
     def instruction(self, form: Form, sentence: Sentence, arguments: Arguments) -> None:
         """A sentence is complete and makes sense."""
         self.events.append(
-            _make_instruction(
+            Instruction(
                 source=self._source,
                 frame=self.frame,
                 time_s=self._timeline.time_s,
@@ -107,7 +102,7 @@ class Reporter:
         self.shown_s = self._timeline.now_s
         self.is_growth_shown = growth is not None
         self.events.append(
-            _make_state(
+            State(
                 source=self._source,
                 frame=self.frame,
                 time_s=self._timeline.time_s,

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from lightgesture.fsm.forms import MENU, Form, FormError, Vocabulary, split_carrier
-from lightgesture.fsm.quick import quick
 
 MAX_TRANSITIONS = 65536
 """Most transitions of a table, so that a hostile file takes neither long nor much memory."""
@@ -49,9 +48,6 @@ class Arguments:
     program: int | None = None
     parameter: int | None = None
     numbers: tuple[tuple[str, int], ...] = ()
-
-
-_make_arguments = quick(Arguments)
 
 
 def next_places(form: Form, place: Place, vocabulary: Vocabulary) -> dict[str, Place]:
@@ -187,7 +183,7 @@ def bind(form: Form, words: Sequence[str], table: Table) -> Arguments:
     single = [word for item, word in inner if not form.is_repeated(item)]
     carried = [number for _, number in map(split_carrier, single) if number is not None]
     slots = {str(form.items[item].slot): int(text) for item, text in numbers if not form.is_repeated(item)}
-    return _make_arguments(
+    return Arguments(
         action=split_carrier(single[0])[0],
         change=single[1] if len(single) > 1 and form.repeated is None and not is_menu else None,
         seconds=slots.get("seconds"),

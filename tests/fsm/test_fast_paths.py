@@ -1,19 +1,13 @@
 """What is written to be quick does the same as the plain way that stands here beside it."""
 
-import dataclasses
-
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lightgesture.fsm import Instruction, State, Word
 from lightgesture.fsm.dwell import Dwell, Hold
-from lightgesture.fsm.events import Growth
 from lightgesture.fsm.forms import spell
-from lightgesture.fsm.quick import quick
 from lightgesture.fsm.reporter import shorten
 from lightgesture.fsm.sentence import Sentence
-from lightgesture.fsm.table import Arguments
 
 
 class PlainDwell(Dwell):
@@ -115,48 +109,6 @@ def test_a_sentence_grows_to_what_its_words_spell(signed, join):
     for count, word in enumerate(words, 1):
         sentence.add(word, HOLD, 0, 0.0, join)
         assert sentence.text == spell(words[:count], join)
-
-
-RECORDS = [
-    Growth(pair=("ok", "5"), word="5", progress=0.4),
-    State(source="a", frame=3, time_s=0.1, state="idle", sentence="", dwell=None),
-    Word(source=None, frame=3, time_s=0.1, pair=("ok", "5"), word="5", state="STOP 5", confidence=0.9),
-    Instruction(
-        source="a",
-        frame=9,
-        time_s=0.3,
-        start_frame=1,
-        start_time_s=0.1,
-        text="STOP HOVER GO",
-        kind="task",
-        action="HOVER",
-        duration_s=None,
-        program=None,
-        parameter=None,
-        change=None,
-        confidence=0.8,
-        words=("STOP", "HOVER", "GO"),
-    ),
-    Arguments(action="HOVER", seconds=5),
-    HOLD,
-]
-
-
-@pytest.mark.parametrize("record", RECORDS, ids=lambda record: type(record).__name__)
-def test_quick_records_are_the_records_themselves(record):
-    columns = [column for column in dataclasses.fields(record) if column.init]
-    made = quick(type(record))(**{column.name: getattr(record, column.name) for column in columns})
-    assert type(made) is type(record)
-    assert made == record
-    assert hash(made) == hash(record)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        setattr(made, columns[0].name, None)
-
-
-def test_quick_records_have_the_defaults():
-    assert quick(Arguments)(action="HOVER") == Arguments(action="HOVER")
-    with pytest.raises(TypeError, match="action"):
-        quick(Arguments)()
 
 
 @given(st.floats(0.0, 1.0))

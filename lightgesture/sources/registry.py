@@ -9,12 +9,19 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder
-from lightgesture.sources.http_stream import HttpStream
 from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source
 from lightgesture.sources.video import VideoFile
+
+
+def _http_stream(address: str, _: SourceOptions) -> LiveSource:
+    # HTTP and its encryption take time and memory that only who reads such a stream should pay for.
+    from lightgesture.sources.http_stream import HttpStream
+
+    return HttpStream(address)
+
 
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
@@ -27,7 +34,7 @@ SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
 LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
-    "http": lambda address, _: HttpStream(address),
+    "http": _http_stream,
     "network": lambda address, _: open_network(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }

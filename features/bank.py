@@ -112,7 +112,8 @@ def build_bank(
     return Bank(tuple(contours_by_class), np.concatenate(centres), np.concatenate(owner), settings)
 
 
-def k_means(points: Float, count: int, rng: np.random.Generator) -> Float:
+# In quotes, for the name alone would load NumPy's random numbers, which only training draws.
+def k_means(points: Float, count: int, rng: "np.random.Generator") -> Float:
     """`count` centres of points, float32 (n, d) -> (min(n, count), d).
 
     Lloyd's rounds from the seeding of Arthur and Vassilvitskii, "k-means++: The Advantages of Careful Seeding", 2007.

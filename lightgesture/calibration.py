@@ -47,13 +47,15 @@ class CalibrationSettings:
 class Shown:
     """Hands in pictures: working pictures, and for each the boxes of its hands in its own pixels, at least one.
 
-    looked_at: pictures that were searched. hands: how many hands a picture shows, 1 or 2.
+    looked_at: pictures that were searched. hands: how many hands a picture shows, 1 or 2. broke_off: why the source
+    gave less than it was asked for, in words; None if it did not.
     """
 
     images: tuple[Image, ...]
     boxes: tuple[tuple[Box, ...], ...]
     looked_at: int
     hands: int
+    broke_off: str | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +87,7 @@ def show_hands(source: Source, place: Place, settings: CalibrationSettings) -> S
     """Pictures of the first seconds that show hands: both where enough pictures do, else one."""
     boxes_in = _Finder().boxes if place is None else _Placer(place, source.name, settings).boxes
     found: list[tuple[Image, tuple[Box, ...]]] = []
-    pictures = _look(source, settings)
+    pictures, broke_off = _look(source, settings)
     for colour in pictures:
         boxes = boxes_in(colour)
         if boxes:
@@ -94,12 +96,12 @@ def show_hands(source: Source, place: Place, settings: CalibrationSettings) -> S
     chosen = both if len(both) >= settings.least_pictures else found
     if len(chosen) < settings.least_pictures:
         raise InputError(
-            f"{source.name}: hands found in {len(found)} of {len(pictures)} pictures, "
+            f"{broke_off or source.name}: hands found in {len(found)} of {len(pictures)} pictures, "
             f"{settings.least_pictures} are needed; hold both open hands still before the camera, "
             "or say where they are with --hands"
         )
     images, boxes_of = zip(*chosen, strict=True)
-    return Shown(images, boxes_of, len(pictures), max(len(boxes) for boxes in boxes_of))
+    return Shown(images, boxes_of, len(pictures), max(len(boxes) for boxes in boxes_of), broke_off)
 
 
 def learn(shown: Shown, kind: Kind, origin: str, settings: CalibrationSettings) -> Calibration:
@@ -154,38 +156,39 @@ class _Finder:
         return [hand.box for hand in hands]
 
 
-def _look(source: Source, settings: CalibrationSettings) -> list[ColourMap]:
-    """Working pictures at even distances over the first seconds, however many frames these have.
+def _look(source: Source, settings: CalibrationSettings) -> tuple[list[ColourMap], str | None]:
+    """Working pictures at even distances over the first seconds, and why these are fewer, if the source broke off.
 
     At most twice as many as are wanted are held: where they overflow, every other one goes, and from there on only one
-    frame in twice as many is kept.
+    frame in twice as many is kept. A source that breaks off is good for what it gave, if that may be enough; else its
+    InputError is raised.
     """
     stage = ColourStage()
     kept: list[ColourMap] = []
-    stride = 1
-    for count, frame in enumerate(_first_seconds(source, settings)):
-        if count % stride == 0:
-            kept.append(stage.process(frame.image))
-        if len(kept) == 2 * settings.pictures:
-            del kept[1::2]
-            stride *= 2
-    taken = min(len(kept), settings.pictures)
-    return [kept[number * len(kept) // taken] for number in range(taken)]
-
-
-def _first_seconds(source: Source, settings: CalibrationSettings) -> Iterator[Frame]:
-    """The frames of the first seconds. A source that breaks off is good for what it gave, if that may be enough."""
-    start, given = None, 0
+    broke_off, stride, count = None, 1, 0
     try:
-        for frame in source:
-            start = frame.time_s if start is None else start
-            if frame.time_s - start > settings.seconds:
-                return
-            given += 1
-            yield frame
-    except InputError:
-        if given < settings.least_pictures:
+        for frame in _first_seconds(source, settings.seconds):
+            if count % stride == 0:
+                kept.append(stage.process(frame.image))
+            if len(kept) == 2 * settings.pictures:
+                del kept[1::2]
+                stride *= 2
+            count += 1
+    except InputError as error:
+        if count < settings.least_pictures:
             raise
+        broke_off = str(error)
+    taken = min(len(kept), settings.pictures)
+    return [kept[number * len(kept) // taken] for number in range(taken)], broke_off
+
+
+def _first_seconds(source: Source, seconds: float) -> Iterator[Frame]:
+    start_s = None
+    for frame in source:
+        start_s = frame.time_s if start_s is None else start_s
+        if frame.time_s - start_s > seconds:
+            return
+        yield frame
 
 
 def _reduced(box: Box, scale: tuple[float, float]) -> Box:

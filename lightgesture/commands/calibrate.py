@@ -1,6 +1,7 @@
 """`lightgesture calibrate`: some seconds of open hands to a colour profile."""
 
 import argparse
+import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source",
         metavar="SOURCE",
-        help="video, folder of frames or camera in which a diver shows both open hands",
+        help="video, folder of frames, bag, or what `live` takes (camera, address, GStreamer pipeline, - for standard "
+        "input), in which a diver shows both open hands",
     )
     parser.add_argument(
         "--out", default="profile.json", metavar="FILE", help="profile to write (default: profile.json)"
@@ -30,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_seconds,
         default=5.0,
         metavar="S",
-        help="how much of the source is looked at (default: 5)",
+        help="how much of the source is looked at, from its first picture (default: 5)",
     )
     parser.add_argument(
         "--hands",
@@ -45,36 +47,46 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=_seconds,
         default=30.0,
         metavar="F",
-        help="frames a second of a folder of frames (default: 30)",
+        help="frames a second of a folder of frames or of standard input (default: 30)",
     )
+    parser.add_argument(
+        "--size",
+        type=_size,
+        metavar="WxH",
+        help="width and height in pixels: of raw BGR pictures on standard input; asked of a camera",
+    )
+    parser.add_argument("--topic", metavar="NAME", help="image topic of a bag (default: the only one)")
     parser.add_argument("--force", action="store_true", help="write a profile that separates poorly too")
 
 
 def run(args: argparse.Namespace) -> int:
     """Learn, judge and write a profile; InputError where there are no hands or it separates poorly."""
     from lightgesture.calibration import CalibrationSettings, calibrate
-    from lightgesture.console import native_messages_muted, print_line
+    from lightgesture.console import native_messages_muted, print_line, say
     from lightgesture.features.profile import save_profile
     from lightgesture.results.atomic import replacing
-    from lightgesture.sources import open_source
+    from lightgesture.sources import SourceOptions, StreamFrames, open_any
 
     out, place = _out(args.out), _place(args.hands)
-    with native_messages_muted(), open_source(args.source, args.fps) as source:
+    options = SourceOptions(args.fps, args.size, args.topic)
+    with native_messages_muted(), open_any(args.source, options) as source:
+        if isinstance(source, StreamFrames):
+            say(f"{source.name}: hold both open hands still before the camera for {args.seconds:g} s")
         result = calibrate(source, args.kind, place, CalibrationSettings(seconds=args.seconds))
-    is_written = result.lack is None or args.force
-    for line in _report(result, args.out if is_written else None):
+    for line in _report(result):
         print_line(line)
-    if not is_written:
+    if result.lack is not None and not args.force:
         raise InputError(
-            f"{args.source}: {result.lack}; nothing is written. Show the hands before another background or in better "
+            f"{source.name}: {result.lack}; nothing is written. Show the hands before another background or in better "
             "light, or write it all the same with --force"
         )
     with replacing(out) as temporary:
         save_profile(temporary, result.profile)
+    print_line(f"written      {out}; use it with: --profile {out}")
     return ExitStatus.OK
 
 
-def _report(result: "Calibration", out: str | None) -> list[str]:
+def _report(result: "Calibration") -> list[str]:
     """How well it separates, in plain words."""
     shown, separation = result.shown, result.profile.separation
     words = "well" if result.lack is None else "poorly"
@@ -86,8 +98,8 @@ def _report(result: "Calibration", out: str | None) -> list[str]:
     ]
     if result.lack is None and result.share <= result.share_without:
         lines.append("remark       the map of skin colours does as well here; no profile is needed")
-    if out is not None:
-        lines.append(f"written      {out}; use it with: --profile {out}")
+    if shown.broke_off is not None:
+        lines.append(f"remark       {shown.broke_off}; what came before was learnt from")
     return lines
 
 
@@ -98,7 +110,11 @@ def _out(text: str) -> Path:
         raise UsageError(f"{text}: is a folder; name a file with --out")
     if not path.parent.is_dir():
         raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
-    return path
+    try:
+        with tempfile.TemporaryFile(dir=path.parent):
+            return path
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another folder") from None
 
 
 def _place(texts: list[str]) -> "Place":
@@ -123,6 +139,15 @@ def _box(text: str) -> "Box":
             f"--hands {text}: is no box; give left edge, upper edge, width and height, as in 40,60,90,120"
         )
     return x, y, width, height
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal() and 0 < int(width) < 1e5 and 0 < int(height) < 1e5):
+        raise argparse.ArgumentTypeError(
+            f"{text} is no size; write width and height in pixels, as in 640x480"
+        )
+    return int(width), int(height)
 
 
 def _seconds(text: str) -> float:

@@ -2,8 +2,9 @@
 
 from lightgesture.sources.names import expand_inputs, natural_key
 from lightgesture.sources.pictures import is_picture_name, read_picture, to_image
-from lightgesture.sources.registry import LIVE_SOURCES, SOURCES, live_source, open_source
+from lightgesture.sources.registry import LIVE_SOURCES, SOURCES, live_source, open_any, open_source
 from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
+from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import Content, LiveSource, Source
 
 __all__ = [
@@ -14,10 +15,12 @@ __all__ = [
     "LiveSource",
     "Source",
     "SourceOptions",
+    "StreamFrames",
     "expand_inputs",
     "is_picture_name",
     "live_source",
     "natural_key",
+    "open_any",
     "open_source",
     "read_picture",
     "to_image",

@@ -9,11 +9,19 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder
-from lightgesture.sources.http_stream import HttpStream
 from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
+from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source
 from lightgesture.sources.video import VideoFile
+
+
+def _http_stream(address: str, _: SourceOptions) -> LiveSource:
+    # HTTP and its encryption take time and memory that only who reads such a stream should pay for.
+    from lightgesture.sources.http_stream import HttpStream
+
+    return HttpStream(address)
+
 
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
@@ -26,7 +34,7 @@ SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
 LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
-    "http": lambda address, _: HttpStream(address),
+    "http": _http_stream,
     "network": lambda address, _: open_network(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
@@ -55,6 +63,18 @@ def live_source(name: str, options: SourceOptions) -> LiveSource:
     return LIVE_SOURCES[_live_kind(name)](name, options)
 
 
+def open_any(name: str, options: SourceOptions) -> Source:
+    """Open what `open_source` opens, or make frames of what `live_source` reads; errors are those of these two.
+
+    A stream is a `StreamFrames`, and is opened by its `with` block. What is there as a file or a folder is taken for
+    one, and standard input for a recording.
+    """
+    is_recording = name == STANDARD_INPUT or os.path.isfile(name) or os.path.isdir(name)
+    if is_recording or (_stream_kind(name) is None and "://" not in name):
+        return open_source(name, options.fps, size=options.size, topic=options.topic)
+    return StreamFrames(live_source(name, options))
+
+
 def _kind(name: str) -> str:
     if name == STANDARD_INPUT and not os.path.lexists(name):
         return "standard input"
@@ -74,9 +94,20 @@ def _kind(name: str) -> str:
 
 
 def _live_kind(name: str) -> str:
+    kind = "standard input" if name == STANDARD_INPUT else _stream_kind(name)
+    if kind is not None:
+        return kind
+    if os.path.exists(name):
+        raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
+    raise UsageError(
+        f"{name}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), a GStreamer pipeline "
+        "or - for standard input"
+    )
+
+
+def _stream_kind(name: str) -> str | None:
+    """Kind of a camera, an address or a pipeline; None for any other name."""
     scheme = name.partition("://")[0].lower() if "://" in name else ""
-    if name == STANDARD_INPUT:
-        return "standard input"
     if scheme in ("http", "https"):
         return "http"
     if scheme in NETWORK_SCHEMES:
@@ -85,12 +116,7 @@ def _live_kind(name: str) -> str:
         return "gstreamer"
     if name.isdecimal() or _is_device(name) or name.startswith("/dev/"):
         return "camera"
-    if os.path.exists(name):
-        raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
-    raise UsageError(
-        f"{name}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), a GStreamer pipeline "
-        "or - for standard input"
-    )
+    return None
 
 
 def _is_device(name: str) -> bool:

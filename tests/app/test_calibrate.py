@@ -136,6 +136,8 @@ def test_no_hands_is_one_line(run, make_folder, tmp_path):
         (["--seconds", "nan"], "argument --seconds"),
         (["--seconds", "soon"], "argument --seconds"),
         (["--kind", "mitten"], "argument --kind: invalid choice"),
+        (["--size", "640"], "argument --size: 640 is no size"),
+        (["--size", "0x480"], "argument --size: 0x480 is no size"),
     ],
 )
 def test_wrong_options_are_one_line(run, make_folder, options, message):
@@ -146,7 +148,12 @@ def test_wrong_options_are_one_line(run, make_folder, options, message):
 
 
 def test_where_to_write_is_checked_before_the_source_is_opened(run, tmp_path):
-    for out, message in ((tmp_path / "none" / "p.json", "no such folder"), (tmp_path, "is a folder")):
+    places = [
+        (tmp_path / "none" / "p.json", "no such folder"),
+        (tmp_path, "is a folder"),
+        ("/proc/p.json", "/proc/p.json: cannot be written ("),
+    ]
+    for out, message in places:
         result = run("calibrate", tmp_path / "missing.mp4", "--out", out)
         assert result.status == ExitStatus.USAGE
         assert message in result.err[0]
@@ -168,7 +175,8 @@ def test_the_middle_box_is_square_and_central():
 def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(frames):
     images = [np.full((12, 16, 3), index, np.uint8) for index in range(frames)]
     stream = Stream(images, step_s=0.1)
-    taken = calibration._look(stream, CalibrationSettings(seconds=4.95, pictures=10))
+    taken, broke_off = calibration._look(stream, CalibrationSettings(seconds=4.95, pictures=10))
+    assert broke_off is None
     in_time = min(frames, 50)
     assert stream.given == min(frames, 51)
     assert len(taken) == min(in_time, 10)
@@ -182,7 +190,8 @@ def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(fram
 def test_a_source_that_breaks_off_serves_if_enough_was_seen():
     cut = InputError("stream: ended early")
     images = [_gloves(seed) for seed in range(5)]
-    assert show_hands(Stream(images, error=cut), BOXES, CalibrationSettings()).looked_at == 5
+    shown = show_hands(Stream(images, error=cut), BOXES, CalibrationSettings())
+    assert (shown.looked_at, shown.broke_off) == (5, "stream: ended early")
     with pytest.raises(InputError, match="ended early"):
         show_hands(Stream(images[:3], error=cut), BOXES, CalibrationSettings())
 

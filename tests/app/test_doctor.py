@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 import sys
 
 import pytest
@@ -143,6 +144,19 @@ def test_the_real_probe_to_its_first_record():
     probe = run_probe([ONLY_FIRST])
     assert probe.failure is None
     assert probe.first_s > 0
+
+
+def test_the_first_record_loads_nothing_that_it_does_not_need():
+    heavy = {"av", "http.client", "matplotlib", "numba", "numpy.random", "scipy", "sklearn", "ssl", "torch"}
+    code = (
+        "import sys; from lightgesture import doctor_probe; doctor_probe.main([doctor_probe.ONLY_FIRST]);"
+        f"sys.exit(' '.join(sorted({heavy} & set(sys.modules))))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.stderr.strip() == ""
+    assert json.loads(done.stdout) == FIRST
 
 
 @pytest.mark.slow

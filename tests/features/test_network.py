@@ -101,6 +101,20 @@ def test_a_net_without_dense_layers_takes_pictures_of_any_size():
         np.testing.assert_allclose(fast, slow, atol=6.5 * network.quantisation["maps"].scale)
 
 
+def test_any_number_of_pictures_goes_through_one_plan_to_what_each_gives_alone():
+    pytest.importorskip("ai_edge_litert")
+    from lightgesture.features.network_litert import LiteRtRunner
+
+    runner = LiteRtRunner(random_network(3))
+    pictures = _input(4, 5)["x"]
+    together = runner.run({"x": pictures})
+    for place in range(len(pictures)):
+        alone = runner.run({"x": pictures[place : place + 1]})
+        for name in together:
+            np.testing.assert_array_equal(together[name][place : place + 1], alone[name])
+    assert len(runner._planned) == 1
+
+
 def test_pictures_of_many_sizes_keep_a_bounded_number_of_plans():
     pytest.importorskip("ai_edge_litert")
     from lightgesture.features.network_litert import MOST_PLANNED, LiteRtRunner

@@ -1,5 +1,8 @@
+import io
+import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +16,27 @@ from lightgesture.models.train_svm import SvmSettings
 
 SMALL = VectorSettings(PatchSettings(size=24), HogSettings(cell=6), ContourSettings(size=24))
 """Features that take little time."""
+
+
+Change = Callable[[Path, Callable[[dict[str, Any], dict[str, np.ndarray]], None]], Path]
+"""Changes header and arrays of a model file."""
+
+
+@pytest.fixture
+def changed() -> Change:
+    """Writes a model file anew with its header and arrays changed, and gives its path back."""
+
+    def rewrite(path: Path, change: Callable[[dict[str, Any], dict[str, np.ndarray]], None]) -> Path:
+        with np.load(path) as file:
+            arrays = dict(file)
+        header = json.loads(arrays.pop("header").tobytes())
+        change(header, arrays)
+        content = io.BytesIO()
+        np.savez(content, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
+        path.write_bytes(content.getvalue())
+        return path
+
+    return rewrite
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """The hand net: the same answers from both run-times; its file comes back whole or is refused."""
 
-import io
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -116,18 +114,6 @@ def test_every_cut_is_refused(path: Path) -> None:
         assert "\n" not in str(refusal.value)
 
 
-def changed(path: Path, change: Callable[[dict[str, Any], dict[str, np.ndarray]], None]) -> Path:
-    """The file with its header and arrays changed."""
-    with np.load(path) as file:
-        arrays = dict(file)
-    header = json.loads(arrays.pop("header").tobytes())
-    change(header, arrays)
-    content = io.BytesIO()
-    np.savez(content, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
-    path.write_bytes(content.getvalue())
-    return path
-
-
 def spoil_scales(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
     arrays["net_seen_scales"] = np.full_like(arrays["net_seen_scales"], np.nan)
 
@@ -152,7 +138,9 @@ def spoil_scales(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
         spoil_scales,
     ],
 )
-def test_a_damaged_file_is_refused_in_one_line(path: Path, change: Callable[..., None]) -> None:
+def test_a_damaged_file_is_refused_in_one_line(
+    path: Path, change: Callable[..., None], changed: Callable[..., Path]
+) -> None:
     with pytest.raises(ModelError) as refusal:
         load_classifier(changed(path, change))
     assert str(path) in str(refusal.value)

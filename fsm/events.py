@@ -1,4 +1,7 @@
-"""What the decoder says: frozen records, one class per `type`, keys in the documented order.
+"""What the decoder says: records, one class per `type`, keys in the documented order.
+
+All are frozen but what displays are told while a hold grows: it is made in the midst of the frames of a video, and a
+frozen record takes three times as long to make.
 
 Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame
 and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own.
@@ -21,7 +24,7 @@ def _record(event: Any) -> dict[str, Any]:
     return {item.name: _plain(getattr(event, item.name)) for item in fields(event)}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True)
 class Growth:
     """A hold that is growing: `word` is what it would be read as (None: no word), `progress` 0 to 1."""
 
@@ -110,7 +113,7 @@ class Rejected:
         return _record(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True)
 class State:
     """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
 

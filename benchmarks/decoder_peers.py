@@ -63,6 +63,23 @@ def edges(grammar: Grammar) -> Iterator[tuple[str, int, int]]:
             yield method(word), state, 0 if target in grammar.table.accepting else target
 
 
+def _step(guarded: Guarded, is_idle: Callable[[], bool]) -> Step:
+    """What is called as the decoder's own `step` is."""
+
+    def call(
+        left: str | None,
+        right: str | None,
+        time_s: float,
+        confidence: float,
+        _: float,
+        frame: int,
+        *_seen: bool,
+    ) -> object:
+        return guarded.step(left, right, time_s, confidence, frame, is_idle())
+
+    return call
+
+
 def transitions_step(grammar: Grammar, always: bool = True) -> Step:
     """The grammar as a machine of the package `transitions`."""
     import transitions
@@ -80,18 +97,7 @@ def transitions_step(grammar: Grammar, always: bool = True) -> Step:
     )
     guarded.ask(machine)
 
-    def call(
-        left: str | None,
-        right: str | None,
-        time_s: float,
-        confidence: float,
-        _: float,
-        frame: int,
-        *_seen: bool,
-    ) -> object:
-        return guarded.step(left, right, time_s, confidence, frame, machine.state == "s0")
-
-    return call
+    return _step(guarded, lambda: bool(machine.state == "s0"))
 
 
 def statemachine_step(grammar: Grammar, always: bool = True) -> Step:
@@ -111,15 +117,4 @@ def statemachine_step(grammar: Grammar, always: bool = True) -> Step:
     guarded.ask(machine)
     idle = machine.s0
 
-    def call(
-        left: str | None,
-        right: str | None,
-        time_s: float,
-        confidence: float,
-        _: float,
-        frame: int,
-        *_seen: bool,
-    ) -> object:
-        return guarded.step(left, right, time_s, confidence, frame, bool(idle.is_active))
-
-    return call
+    return _step(guarded, lambda: bool(idle.is_active))

@@ -31,14 +31,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 30000)")
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 80000)")
     parser.add_argument(
         "--teachers",
         type=count,
         metavar="N",
         help="larger nets that are learnt from; 0: learn from the labels alone (default: 2)",
     )
-    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 8000)")
+    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 4000)")
     parser.add_argument(
         "--precision",
         choices=PRECISIONS,

@@ -60,9 +60,9 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 30000
+    steps: int = 80000
     teachers: int = 2
-    teacher_steps: int = 8000
+    teacher_steps: int = 4000
     precision: "Precision" = "float32"
     one_in: int = 12
     smallest_hand: int = 12
@@ -214,7 +214,7 @@ def make_card(
     return {
         "name": "cnn",
         "version": __version__,
-        "what": "hand patch to token: a net of five convolutions and one dense layer, 8-bit integers",
+        "what": "hand patch to token: a net of eight convolutions and one dense layer, 8-bit integers",
         "classes": list(model.classes),
         "use": "bare hands of a diver facing the camera, in boxes of lightgesture's selector",
         "limits": list(LIMITS),

@@ -26,7 +26,8 @@ CALIBRATION = 12
 
 @dataclass(frozen=True, slots=True)
 class NetSettings:
-    """steps, batch, rate: of the optimiser. precision: see `net_training.PRECISIONS`.
+    """steps, batch, rate: of the optimiser. matrix_rate: of the layers within the net, see `optimisers`.
+    precision: see `net_training.PRECISIONS`.
     smoothing: share of the truth that is spread over all classes, 0 to 0.2.
     taught: share of the loss that is the distance to the teachers' answers, 0 to 1. softness: temperature of both
     answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
@@ -35,6 +36,7 @@ class NetSettings:
     precision: Precision = "float32"
     batch: int = 128
     rate: float = 3e-3
+    matrix_rate: float = 0.05
     smoothing: float = 0.05
     taught: float = 0.7
     softness: float = 3.0
@@ -95,7 +97,9 @@ def train_hand_net(
         return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
 
     warm_up = max(1, min(300, settings.steps // 4))
-    loop = LoopSettings(settings.steps, settings.rate, warm_up=warm_up, precision=settings.precision)
+    loop = LoopSettings(
+        settings.steps, settings.rate, settings.matrix_rate, warm_up=warm_up, precision=settings.precision
+    )
     return train_net(net, batch, loss, loop, seed, checkpoint, progress)
 
 

@@ -1,4 +1,4 @@
-"""The loop that trains a net: AdamW, a cosine of the rate, a running mean of the weights, checkpoints. Needs torch."""
+"""The loop that trains a net: a cosine of the rate, a running mean of the weights, checkpoints. Needs torch."""
 
 import copy
 from collections.abc import Callable, Iterator, Mapping
@@ -12,6 +12,7 @@ import torch
 from torch import Tensor
 
 from lightgesture.results.atomic import replacing
+from lightgesture.training.optimisers import NetOptimiser
 from lightgesture.training.time_left import TimeLeft
 from lightgesture.training.torch_network import TorchNetwork
 
@@ -25,12 +26,14 @@ on processors with instructions for it and several times as long on others."""
 
 @dataclass(frozen=True, slots=True)
 class LoopSettings:
-    """steps: of the optimiser. rate: highest learning rate. warm_up: steps until it is reached. decay: of weights.
-    clip: largest norm of the gradient. mean: share of the running mean that each step keeps. save_every: steps between
-    checkpoints. precision: one of `PRECISIONS`."""
+    """steps: of the optimiser. rate: highest learning rate. matrix_rate: that of the matrices of layers within the net,
+    0 where all learn alike, see `optimisers`. warm_up: steps until they are reached. decay: of weights. clip: largest
+    norm of the gradient. mean: share of the running mean that each step keeps. save_every: steps between checkpoints.
+    precision: one of `PRECISIONS`."""
 
     steps: int
     rate: float
+    matrix_rate: float = 0.0
     warm_up: int = 300
     decay: float = 0.02
     clip: float = 5.0
@@ -55,21 +58,15 @@ def train_net(
     # The order in memory that the system's convolutions of few channels are quickest in.
     net = net.to(memory_format=torch.channels_last)
     mean = copy.deepcopy(net)
-    decayed = [value for value in net.parameters() if value.ndim > 1]
-    plain = [value for value in net.parameters() if value.ndim <= 1]
-    groups = [{"params": decayed, "weight_decay": settings.decay}, {"params": plain, "weight_decay": 0.0}]
-    optimiser = torch.optim.AdamW(groups, settings.rate)
+    optimiser = NetOptimiser(net, settings.rate, settings.matrix_rate, settings.decay)
     first = _resume(checkpoint, net, mean, optimiser)
     left = TimeLeft(settings.steps, first)
     net.train()
     for step, (inputs, truth) in _ahead(batch, first, settings.steps, seed):
-        for group in optimiser.param_groups:
-            group["lr"] = _rate(step, settings)
         value = loss(net_outputs(net, inputs, settings.precision), truth)
-        optimiser.zero_grad()
         value.backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)
-        optimiser.step()
+        optimiser.step(_share_of_rate(step, settings))
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
         if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
             progress(
@@ -104,12 +101,12 @@ def _ahead(
             yield step, drawn
 
 
-def _rate(step: int, settings: LoopSettings) -> float:
+def _share_of_rate(step: int, settings: LoopSettings) -> float:
     cosine = 0.5 * (1.0 + np.cos(np.pi * step / settings.steps))
-    return float(settings.rate * min(1.0, (step + 1) / settings.warm_up) * (cosine * 0.98 + 0.02))
+    return float(min(1.0, (step + 1) / settings.warm_up) * (cosine * 0.98 + 0.02))
 
 
-def _resume(checkpoint: Path, net: TorchNetwork, mean: TorchNetwork, optimiser: torch.optim.Optimizer) -> int:
+def _resume(checkpoint: Path, net: TorchNetwork, mean: TorchNetwork, optimiser: NetOptimiser) -> int:
     if not checkpoint.exists():
         return 0
     state = torch.load(checkpoint, weights_only=True)

@@ -11,7 +11,7 @@ from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
 
 pytest.importorskip("torch")
-QUICK = ("--copies", "4", "--synthetic", "0", "--steps", "60", "--teacher-steps", "15", "--size", "small")
+QUICK = ("--copies", "4", "--synthetic", "0", "--steps", "120", "--teacher-steps", "15", "--size", "small")
 
 
 def train(folder: Path, out: Path, *more: str) -> int:

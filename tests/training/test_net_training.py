@@ -31,11 +31,12 @@ def squared(outputs, truth):
     return (outputs["answer"][:, 0] - truth[0]).square().mean()
 
 
-def train(path, batch=brightness, said=None, seed=5):
+def train(path, batch=brightness, said=None, seed=5, matrix_rate=0.0):
     from lightgesture.training.net_training import LoopSettings, train_net
 
     tell = (said if said is not None else []).append
-    return train_net(a_net(), batch, squared, LoopSettings(**SETTINGS), seed, path, tell)
+    settings = LoopSettings(**SETTINGS, matrix_rate=matrix_rate)
+    return train_net(a_net(), batch, squared, settings, seed, path, tell)
 
 
 def same(one, other):
@@ -45,7 +46,8 @@ def same(one, other):
     )
 
 
-def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path):
+@pytest.mark.parametrize("matrix_rate", [0.0, 0.05])
+def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path, matrix_rate):
     drawn = []
 
     def interrupted(rng):
@@ -54,21 +56,24 @@ def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path):
             raise KeyboardInterrupt
         return brightness(rng)
 
-    whole = train(tmp_path / "whole.pt")
+    whole = train(tmp_path / "whole.pt", matrix_rate=matrix_rate)
     with pytest.raises(KeyboardInterrupt):
-        train(tmp_path / "parts.pt", interrupted)
+        train(tmp_path / "parts.pt", interrupted, matrix_rate=matrix_rate)
     said = []
-    assert same(train(tmp_path / "parts.pt", said=said), whole)
+    assert same(train(tmp_path / "parts.pt", said=said, matrix_rate=matrix_rate), whole)
     assert [line.split(",")[0] for line in said] == ["parts: step 4 of 6", "parts: step 6 of 6"]
-    assert not same(train(tmp_path / "other.pt", seed=6), whole)
+    assert not same(train(tmp_path / "other.pt", seed=6, matrix_rate=matrix_rate), whole)
+    assert not same(train(tmp_path / "slow.pt", matrix_rate=0.01), whole)
 
 
-@pytest.mark.parametrize("precision", ["float32", "bfloat16"])
-def test_training_lowers_the_loss(tmp_path, precision):
+@pytest.mark.parametrize(
+    ("precision", "matrix_rate"), [("float32", 0.0), ("bfloat16", 0.0), ("float32", 0.02)]
+)
+def test_training_lowers_the_loss(tmp_path, precision, matrix_rate):
     from lightgesture.training.net_training import LoopSettings, train_net
 
     inputs, truth = brightness(np.random.default_rng(9))
-    settings = LoopSettings(60, 0.02, warm_up=5, precision=precision)
+    settings = LoopSettings(60, 0.02, matrix_rate, warm_up=5, precision=precision)
     trained = train_net(a_net(), brightness, squared, settings, 0, tmp_path / "net.pt", [].append)
     assert all(value.dtype == torch.float32 for value in trained.parameters())
     with torch.no_grad():

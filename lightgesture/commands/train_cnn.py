@@ -31,7 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 80000)")
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 60000)")
     parser.add_argument(
         "--teachers",
         type=count,

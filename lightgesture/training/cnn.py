@@ -60,7 +60,7 @@ class CnnTraining:
     jobs: int = 1
     size: str = "medium"
     contours: bool = False
-    steps: int = 80000
+    steps: int = 60000
     teachers: int = 2
     teacher_steps: int = 4000
     precision: "Precision" = "float32"

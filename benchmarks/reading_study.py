@@ -49,7 +49,8 @@ from lightgesture.console import say
 from lightgesture.datasets import find_data, fold_of
 from lightgesture.errors import InputError
 from lightgesture.models.loading import SHIPPED
-from lightgesture.training.cnn import CnnTraining, kept_out, read_originals
+from lightgesture.training.cnn import CnnTraining, read_originals
+from lightgesture.training.kept_sources import kept_out
 from lightgesture.training.patch_pool import rows_without
 
 FOLDS = 5

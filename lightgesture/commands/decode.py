@@ -5,7 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    from lightgesture.settings import DECODE, add_options
+    from lightgesture.options import add_options
+    from lightgesture.settings import DECODE
 
     parser.add_argument(
         "inputs",
@@ -20,7 +21,7 @@ def run(args: argparse.Namespace) -> int:
     """Decode the inputs; 0 when all were, 1 when some failed."""
     from lightgesture.console import native_messages_muted
     from lightgesture.decoding import decode
-    from lightgesture.settings import load_settings
+    from lightgesture.options import load_settings
     from lightgesture.sources import expand_inputs
 
     settings = load_settings(args)

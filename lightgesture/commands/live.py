@@ -5,7 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    from lightgesture.settings import LIVE, add_options
+    from lightgesture.options import add_options
+    from lightgesture.settings import LIVE
 
     parser.add_argument(
         "source",
@@ -20,7 +21,7 @@ def run(args: argparse.Namespace) -> int:
     """Decode until the stream ends for good or a signal comes; 0, or 130 after Ctrl-C."""
     from lightgesture.console import native_messages_muted
     from lightgesture.live.running import run_live
-    from lightgesture.settings import load_settings
+    from lightgesture.options import load_settings
 
     settings = load_settings(args)
     with native_messages_muted():

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture._version import __version__
-from lightgesture.datasets import fold_of
 from lightgesture.features.contours import contour_length
 from lightgesture.features.patch import cut_patch
 from lightgesture.models import CLASSES
@@ -23,10 +22,11 @@ from lightgesture.models.train_svm import HeldOut
 from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
 from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.hand_samples import HandSamples
+from lightgesture.training.kept_sources import keeps_whole_sources, kept_out
 from lightgesture.training.negatives import read_backgrounds, read_scenes
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
-from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+from lightgesture.training.samples import HandRow, load_hand, read_rows
 from lightgesture.training.time_left import TimeLeft
 
 if TYPE_CHECKING:
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from lightgesture.training.net_training import Precision
 
 Progress = Callable[[str], None]
-ORDERS = 1 << 20
-"""So many places in the order in which sources are kept from the net; names hardly ever share one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +46,8 @@ class CnnTraining:
     size: of the net, "small", "medium" or "large". contours: whether it looks at the outline's numbers, too.
     steps: of the optimiser. teachers: number of larger nets that it learns from, too, 0 for none. teacher_steps: of
     each of these. precision: in which nets are reckoned while they learn, see `net_training.PRECISIONS`.
-    one_in: of so many hands, one is kept from the net, for the temperature and the scores of the card; see `kept_out`.
+    one_in: of so many hands, one is kept from the net, for the temperature and the scores of the card; see
+    `kept_sources.kept_out`.
     smallest_hand: longer side of the smallest box that is read, pixels. pool: what is drawn.
     """
 
@@ -107,31 +106,6 @@ def read_originals(training: CnnTraining, rows: Sequence[HandRow]) -> Originals:
         [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)],
         read_scenes(training.scenes, negative) if training.scenes else (),
     )
-
-
-def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
-    """Which hands are kept from the net, bool (n,): whole sources that hold one hand in so many together.
-
-    Sources come in an order that their names give, so that a further one changes little; a source that is too large
-    is passed over. Where sources are so few or so large that less than half of that is found, one hand in so many is
-    kept, whoever's it is.
-    """
-    names, members, sizes = np.unique(
-        [hand.source for hand in hands], return_inverse=True, return_counts=True
-    )
-    room = len(hands) / one_in
-    kept = np.zeros(len(names), bool)
-    for place in sorted(range(len(names)), key=lambda place: fold_of(str(names[place]), ORDERS)):
-        kept[place] = sizes[kept].sum() + sizes[place] <= room
-    if sizes[kept].sum() < 0.5 * room:
-        return np.asarray(np.arange(len(hands)) % one_in == 0)
-    return np.asarray(kept[members.reshape(-1)])
-
-
-def keeps_whole_sources(hands: Sequence[LabelledHand], kept: NDArray[np.bool_]) -> bool:
-    """Whether no source has both hands that are kept from the net and others."""
-    sources = np.array([hand.source for hand in hands])
-    return not np.isin(sources[kept], sources[~kept]).any()
 
 
 def fit(

@@ -5,7 +5,8 @@ import argparse
 import pytest
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.settings import DECODE, LIVE, DecodeSettings, add_options, load_settings, read_config
+from lightgesture.options import add_options, load_settings, read_config
+from lightgesture.settings import DECODE, LIVE, DecodeSettings
 
 
 def load(*arguments):

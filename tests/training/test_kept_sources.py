@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.training.cnn import keeps_whole_sources, kept_out
+from lightgesture.training.kept_sources import keeps_whole_sources, kept_out
 from lightgesture.training.samples import LabelledHand
 
 PICTURE = np.zeros((4, 4, 3), np.uint8)

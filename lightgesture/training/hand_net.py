@@ -1,5 +1,6 @@
 """Training of a hand net on a pool of patches, if wanted from larger nets' answers too. Needs torch."""
 
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -72,9 +73,10 @@ def train_hand_net(
     seed: int,
     checkpoint: Path,
     progress: Callable[[str], None],
+    stopping: threading.Event | None = None,
 ) -> TorchNetwork:
     """The trained net in floating point; goes on at `checkpoint` where there is one. scale: None for a net without
-    outline.
+    outline. stopping: see `train_net`.
 
     It takes one thread: a step of so small a net is no quicker on two, and so no number of cores changes the result.
     """
@@ -100,7 +102,7 @@ def train_hand_net(
     loop = LoopSettings(
         settings.steps, settings.rate, settings.matrix_rate, warm_up=warm_up, precision=settings.precision
     )
-    return train_net(net, batch, loss, loop, seed, checkpoint, progress)
+    return train_net(net, batch, loss, loop, seed, checkpoint, progress, stopping)
 
 
 def to_integers(

@@ -1,6 +1,7 @@
 """The loop that trains a net: a cosine of the rate, a running mean of the weights, checkpoints. Needs torch."""
 
 import copy
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -50,10 +51,12 @@ def train_net(
     seed: int,
     checkpoint: Path,
     progress: Callable[[str], None],
+    stopping: threading.Event | None = None,
 ) -> TorchNetwork:
     """The running mean of the trained net; goes on at `checkpoint` where there is one.
 
     Step `n` draws its batch from (seed, n) alone, so that an interrupted training gives what a whole one gives.
+    stopping: is set where another thread wants no more of it; KeyboardInterrupt is raised then.
     """
     # The order in memory that the system's convolutions of few channels are quickest in.
     net = net.to(memory_format=torch.channels_last)
@@ -63,6 +66,8 @@ def train_net(
     left = TimeLeft(settings.steps, first)
     net.train()
     for step, (inputs, truth) in _ahead(batch, first, settings.steps, seed):
+        if stopping is not None and stopping.is_set():
+            raise KeyboardInterrupt
         value = loss(net_outputs(net, inputs, settings.precision), truth)
         value.backward()  # type: ignore[no-untyped-call]
         torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)

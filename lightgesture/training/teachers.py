@@ -4,8 +4,9 @@ A teacher is asked about a patch without the shifts and the covered parts that t
 anew at every step would take longer than the step itself.
 """
 
+import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from pathlib import Path
 
 import numpy as np
@@ -45,15 +46,24 @@ def teach(
             make_net(teacher_nodes(len(samples.classes)), samples.size, 0, seed + own) for own in range(count)
         ]
 
+        stopping = threading.Event()
+
         def taught_answers(number: int) -> NDArray[np.float32]:
             checkpoint = folder / f"teacher{number + 1}.pt"
-            net = train_hand_net(nets[number], samples, None, settings, seed + number, checkpoint, progress)
+            net = train_hand_net(
+                nets[number], samples, None, settings, seed + number, checkpoint, progress, stopping
+            )
             return answers_of(net, samples, settings)
 
         with ThreadPoolExecutor(max(1, min(jobs, count))) as pool:
-            total = sum(
-                pool.map(taught_answers, range(count)), np.zeros((len(samples), len(samples.classes)))
-            )
+            learning = [pool.submit(taught_answers, number) for number in range(count)]
+            try:
+                for one in wait(learning, return_when=FIRST_EXCEPTION).done:
+                    one.result()
+            finally:
+                # Ctrl-C reaches this thread alone, and a failure one other; else the rest would learn to the end.
+                stopping.set()
+        total = sum((one.result() for one in learning), np.zeros((len(samples), len(samples.classes))))
         with replacing(path) as temporary, temporary.open("wb") as stream:
             np.save(stream, (total / count).astype(np.float16))
     answers = np.asarray(np.load(path), np.float16)

@@ -98,6 +98,9 @@ class ColourStage:
         Raises ValueError, one line, for an array that is no picture.
         """
         check_frame(image)
+        if image.ndim == 3:
+            # Alpha goes first: on Arm OpenCV reduces four channels by another rounding than three.
+            image = image[..., :3]
         # Reduced first: of a huge frame of 16 bits only what is looked at is converted.
         picture, detail = (as_bgr8(part) for part in reduce_picture(image, self.settings.working_pixels))
         height, width = image.shape[:2]

@@ -15,7 +15,7 @@ from lightgesture.models.archive import write_file
 from lightgesture.models.projection import Progress
 from lightgesture.models.svm_file import SvmModel, write_svm_model
 from lightgesture.models.train_svm import HeldOut, SvmSettings, train_svm
-from lightgesture.training.card import LIMITS, data_section, held_out_section
+from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
 from lightgesture.training.negatives import Scene, read_backgrounds, read_scenes
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.stream import StreamSettings, stream
@@ -129,4 +129,5 @@ def make_card(
             "temperature": model.temperature,
         },
         "held_out_sources": held_out_section(held_out, model.classes),
+        "operating_points": operating_points(held_out, model.classes),
     }

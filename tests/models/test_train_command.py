@@ -30,6 +30,7 @@ def test_folders_become_a_model_and_its_card(
     assert card["training"]["seed"] == 0
     assert card["held_out_sources"]["per_class"]["1"] > 0.8
     assert card["limits"]
+    assert len(card["operating_points"]) > 3
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "wrote" in captured.err

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import reading_baselines, reading_study, study_rows
+from lightgesture.benchmarks import reading_baselines, reading_study, study_kinds, study_rows
 from lightgesture.benchmarks.study_data import (
     held_out_subjects,
     open_study,
@@ -167,7 +167,7 @@ def study_command(monkeypatch, drawn, tmp_path):
     """Runs a study with a recorder in place of its trainings; returns that and the JSON rows."""
     monkeypatch.setattr(checkpoints, "need_torch", lambda: None)
     recorder = Recorder()
-    monkeypatch.setattr(reading_study, "fit_row", recorder)
+    monkeypatch.setattr(study_kinds, "fit_row", recorder)
     out = tmp_path / "rows.json"
 
     def run(kind, *more):
@@ -211,6 +211,12 @@ def test_nets_differ_in_one_thing(study_command, kind, names):
     assert [row["row"] for row in rows] == names
     assert len({(training.size, training.contours) for *_, training in trained}) == len(names)
     assert len({(tuple(sorted(seen)), tuple(sorted(held))) for _, seen, held, _ in trained}) == 1
+
+
+def test_the_learning_curve_has_a_training_of_its_own_for_each_length(study_command):
+    trained, rows = study_command("steps", "--counts", "2", "5")
+    assert [row["row"] for row in rows] == ["2 steps", "5 steps"]
+    assert [training.steps for *_, training in trained] == [2, 5]
 
 
 def test_each_alteration_has_a_pool_of_its_own(study_command, tmp_path):

@@ -7,10 +7,10 @@ from lightgesture import Pipeline
 from lightgesture.decoding import SAMPLE
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.models import load_classifier
-from lightgesture.pipeline import KEPT_TIMES, StageClock
 from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 from lightgesture.sources import open_source
+from lightgesture.stage_clock import KEPT_TIMES, StageClock
 
 CLASSES = ("0", "5", "none")
 

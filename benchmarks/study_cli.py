@@ -34,6 +34,12 @@ def add_pool_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--copies", type=positive, metavar="N", help="altered copies of a hand, where a pool is drawn"
     )
+    parser.add_argument(
+        "--rounds",
+        type=positive,
+        metavar="N",
+        help="rounds of regions and of hidden hands, where a pool is drawn",
+    )
     parser.add_argument("--rendered", type=whole, metavar="N", help="rendered hands, where a pool is drawn")
     parser.add_argument(
         "--jobs", type=positive, default=1, metavar="N", help="processes that draw (default 1)"
@@ -58,12 +64,9 @@ def whole(text: str) -> int:
 def training_from(args: argparse.Namespace) -> CnnTraining:
     """The training that the arguments ask for. InputError: there is no data folder."""
     training = training_of(find_data(args.data), seed=args.seed, jobs=args.jobs, steps=args.steps, teachers=0)
-    pool = training.pool
-    if args.copies is not None:
-        pool = replace(pool, copies=args.copies)
-    if args.rendered is not None:
-        pool = replace(pool, rendered=args.rendered)
-    return replace(training, pool=pool)
+    given = {name: getattr(args, name) for name in ("copies", "rounds", "rendered")}
+    changes = {name: value for name, value in given.items() if value is not None}
+    return replace(training, pool=replace(training.pool, **changes))
 
 
 def print_and_write(tables: Sequence[Table], out: str | None, settings: object) -> None:

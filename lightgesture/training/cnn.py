@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from lightgesture._version import __version__
 from lightgesture.features.contours import contour_length
-from lightgesture.features.patch import cut_patch
 from lightgesture.models import CLASSES
 from lightgesture.models.archive import write_file
 from lightgesture.models.calibration import fit_temperature, softmax
@@ -22,7 +21,7 @@ from lightgesture.models.train_svm import HeldOut
 from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
 from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.hand_samples import HandSamples
-from lightgesture.training.kept_sources import keeps_whole_sources, kept_out
+from lightgesture.training.kept_sources import held_out_hands, keeps_whole_sources, kept_out
 from lightgesture.training.negatives import read_backgrounds, read_scenes
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
@@ -30,7 +29,7 @@ from lightgesture.training.samples import HandRow, load_hand, read_rows
 from lightgesture.training.time_left import TimeLeft
 
 if TYPE_CHECKING:
-    from lightgesture.training.hand_net import NetSettings
+    from lightgesture.training.hand_net import LearntNet, NetSettings
     from lightgesture.training.net_training import Precision
 
 Progress = Callable[[str], None]
@@ -86,11 +85,15 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     present = {row.token for row in rows}
     classes = tuple(name for name in CLASSES if name in present)
     sources = np.array([hand.source for hand in originals.hands])
-    model = fit(pool, rows_without(pool, sources, kept), classes, training, folder, progress)
-    held_out = answers(model, originals, pool, kept)
-    model = replace(model, temperature=fit_temperature(*_logits(held_out)))
+    learnt = learn(pool, rows_without(pool, sources, kept), classes, training, folder, progress)
+    model = in_integers(learnt, training)
+    hands = held_out_hands(model, originals, pool, kept)
+    held_out = hands.answered(CnnClassifier(model).scores(hands.patches))
+    model = replace(model, temperature=fit_temperature(held_out.probabilities, held_out.truth))
     calibrated = replace(held_out, probabilities=softmax(held_out.probabilities, model.temperature))
     card = make_card(training, rows, originals, kept, model, calibrated)
+    in_floats = hands.answered(learnt.scores(hands.patches, training.pool.contour))
+    card["model"]["held_out_accuracy_in_floating_point"] = held_out_section(in_floats, classes)["accuracy"]
     card["training"]["seconds"] = round(time.monotonic() - started)
     card["training"]["peak_memory_mib"] = peak_memory_mib()
     write_cnn_model(model, out)
@@ -117,11 +120,23 @@ def fit(
     progress: Progress,
 ) -> CnnModel:
     """A net trained on the chosen rows of the pool, in integers, its temperature not yet fitted."""
+    return in_integers(learn(pool, chosen, classes, training, folder, progress), training)
+
+
+def learn(
+    pool: PatchPool,
+    chosen: NDArray[np.bool_],
+    classes: tuple[str, ...],
+    training: CnnTraining,
+    folder: Path,
+    progress: Progress,
+) -> "LearntNet":
+    """A net trained on the chosen rows of the pool, in floating point."""
     from lightgesture.training.architectures import hand_nodes
-    from lightgesture.training.hand_net import OutlineScale, make_net, to_integers, train_hand_net
+    from lightgesture.training.hand_net import LearntNet, OutlineScale, make_net, train_hand_net
     from lightgesture.training.teachers import teach
 
-    settings, seed, patch = net_settings(training), training.seed, training.pool.patch
+    settings, seed = net_settings(training), training.seed
     samples = HandSamples(pool, chosen, classes, training.pool.margin)
     if training.teachers:
         how = replace(settings, steps=training.teacher_steps)
@@ -130,17 +145,25 @@ def fit(
     length = contour_length(training.pool.contour) if training.contours else 0
     outlines = pool.contours[chosen, :length].astype(np.float32)
     scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))
-    net = make_net(hand_nodes(len(classes), length, training.size), patch.size, length, seed)
+    net = make_net(hand_nodes(len(classes), length, training.size), training.pool.patch.size, length, seed)
     net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress)
+    return LearntNet(net, samples, scale)
+
+
+def in_integers(learnt: "LearntNet", training: CnnTraining) -> CnnModel:
+    """The same net in integers, its temperature not yet fitted."""
+    from lightgesture.training.hand_net import to_integers
+
+    network = to_integers(learnt.net, learnt.samples, learnt.scale, net_settings(training), training.seed)
     return CnnModel(
-        classes=classes,
-        patch=patch,
-        network=to_integers(net, samples, scale, settings, seed),
+        classes=learnt.samples.classes,
+        patch=training.pool.patch,
+        network=network,
         temperature=1.0,
         smallest_hand=training.smallest_hand,
         contour=training.pool.contour if training.contours else None,
-        contour_mean=scale.mean,
-        contour_deviation=scale.deviation,
+        contour_mean=learnt.scale.mean,
+        contour_deviation=learnt.scale.deviation,
     )
 
 
@@ -149,26 +172,6 @@ def net_settings(training: CnnTraining) -> "NetSettings":
     from lightgesture.training.hand_net import NetSettings
 
     return NetSettings(training.steps, training.precision)
-
-
-def answers(model: CnnModel, originals: Originals, pool: PatchPool, kept: NDArray[np.bool_]) -> HeldOut:
-    """Scores, in the place of probabilities, for the hands that were kept out and an altered copy of each."""
-    classifier, hands = CnnClassifier(model), [originals.hands[int(index)] for index in np.flatnonzero(kept)]
-    plain = [cut_patch(hand.image, hand.box, hand.side, model.patch) for hand in hands]
-    first_copies = {int(hand): row for row, hand in reversed(list(enumerate(pool.hands))) if hand >= 0}
-    rows = [first_copies[int(index)] for index in np.flatnonzero(kept)]
-    margin = (pool.patches.shape[1] - model.patch.size) // 2
-    inner = slice(margin, margin + model.patch.size)
-    altered = [np.ascontiguousarray(pool.patches[row, inner, inner]) for row in rows]
-    number = {name: index for index, name in enumerate(model.classes)}
-    truth = [number[hand.token] for hand in hands] + [number[str(pool.tokens[row])] for row in rows]
-    sources = [hand.source for hand in hands]
-    return HeldOut(
-        classifier.scores(np.stack([*plain, *altered])),
-        np.array(truth, np.int64),
-        np.array(sources * 2),
-        np.arange(2 * len(hands)) < len(hands),
-    )
 
 
 def make_card(
@@ -222,10 +225,6 @@ def make_card(
         "held_out_sources": held_out_section(held_out, model.classes),
         "operating_points": operating_points(held_out, model.classes),
     }
-
-
-def _logits(held_out: HeldOut) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
-    return held_out.probabilities, held_out.truth
 
 
 def _told(progress: Progress) -> Callable[[str, int, int], None]:

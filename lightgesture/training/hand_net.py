@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from torch import Tensor
 from torch.nn import functional
 
+from lightgesture.features.contours import ContourSettings, contour_vectors
 from lightgesture.features.network import IntegerNetwork, Node, Shape
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
-from lightgesture.training.hand_samples import HandBatch, HandSamples
+from lightgesture.training.hand_samples import HandBatch, HandSamples, standardised
 from lightgesture.training.net_training import Batch, LoopSettings, Precision, train_net
 from lightgesture.training.quantise import quantise
 from lightgesture.training.torch_network import TorchNetwork
@@ -54,6 +55,22 @@ class OutlineScale:
         """Standardised, float32 (n, c), within the range that the integers hold."""
         values = (contours - self.mean) / self.deviation
         return np.asarray(np.clip(values, *STANDARD_RANGE), np.float32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LearntNet:
+    """net: in floating point. samples: what it learnt from. scale: of the outline's numbers."""
+
+    net: TorchNetwork
+    samples: HandSamples
+    scale: OutlineScale
+
+    def scores(self, patches: NDArray[np.uint8], contour: ContourSettings) -> Float:
+        """Of patches, uint8 (n, size, size, 3), as float32 (n, classes)."""
+        seen = HandBatch(standardised(patches), contour_vectors(patches, contour), np.zeros(0, np.int64))
+        known = self.scale if CONTOUR in self.net.inputs else None
+        with torch.no_grad():
+            return np.asarray(self.net(inputs_of(seen, known))[SCORES].numpy(), np.float32)
 
 
 def make_net(nodes: tuple[Node, ...], size: int, contours: int, seed: int) -> TorchNetwork:

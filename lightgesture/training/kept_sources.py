@@ -1,11 +1,17 @@
 """Which hands are kept from a net: whole sources, each nearly always another person and another room."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.datasets import fold_of
+from lightgesture.features.patch import cut_patch
+from lightgesture.models.cnn import CnnModel
+from lightgesture.models.train_svm import HeldOut
+from lightgesture.training.patch_kinds import Originals
+from lightgesture.training.patch_pool import PatchPool
 from lightgesture.training.samples import LabelledHand
 
 ORDERS = 1 << 20
@@ -35,3 +41,41 @@ def keeps_whole_sources(hands: Sequence[LabelledHand], kept: NDArray[np.bool_]) 
     """Whether no source has both hands that are kept from the net and others."""
     sources = np.array([hand.source for hand in hands])
     return not np.isin(sources[kept], sources[~kept]).any()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldOutHands:
+    """Hands that were kept from the net, and an altered copy of each.
+
+    patches: uint8 (n, size, size, 3). truth: int64 (n,), index of the class. sources: (n,), names. original: bool (n,).
+    """
+
+    patches: NDArray[np.uint8]
+    truth: NDArray[np.int64]
+    sources: NDArray[np.str_]
+    original: NDArray[np.bool_]
+
+    def answered(self, scores: NDArray[np.float32]) -> HeldOut:
+        """The same with scores in the place of probabilities."""
+        return HeldOut(scores, self.truth, self.sources, self.original)
+
+
+def held_out_hands(
+    model: CnnModel, originals: Originals, pool: PatchPool, kept: NDArray[np.bool_]
+) -> HeldOutHands:
+    """The hands that were kept out, as the model sees them."""
+    hands = [originals.hands[int(index)] for index in np.flatnonzero(kept)]
+    plain = [cut_patch(hand.image, hand.box, hand.side, model.patch) for hand in hands]
+    first_copies = {int(hand): row for row, hand in reversed(list(enumerate(pool.hands))) if hand >= 0}
+    rows = [first_copies[int(index)] for index in np.flatnonzero(kept)]
+    margin = (pool.patches.shape[1] - model.patch.size) // 2
+    inner = slice(margin, margin + model.patch.size)
+    altered = [np.ascontiguousarray(pool.patches[row, inner, inner]) for row in rows]
+    number = {name: index for index, name in enumerate(model.classes)}
+    truth = [number[hand.token] for hand in hands] + [number[str(pool.tokens[row])] for row in rows]
+    return HeldOutHands(
+        np.stack([*plain, *altered]),
+        np.array(truth, np.int64),
+        np.array([hand.source for hand in hands] * 2),
+        np.arange(2 * len(hands)) < len(hands),
+    )

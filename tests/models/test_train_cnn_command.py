@@ -35,6 +35,7 @@ def test_folders_become_a_model_and_its_card(
     card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
     assert card["data"]["per_class"] == {"1": 12, "5": 12, "none": 12}
     assert card["model"]["looks_at_the_outline"] == bool(more)
+    assert card["model"]["held_out_accuracy_in_floating_point"] in (0.0, 0.5, 1.0)  # of two hands
     assert len(card["operating_points"]) > 3
     captured = capsys.readouterr()
     assert captured.out == ""

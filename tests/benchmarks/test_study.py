@@ -220,8 +220,9 @@ def test_the_learning_curve_has_a_training_of_its_own_for_each_length(study_comm
 
 
 def test_each_alteration_has_a_pool_of_its_own(study_command, tmp_path):
-    trained, _ = study_command("augmentation", "--only", "everything", "--only", "no mirror")
+    trained, _ = study_command("augmentation", "--only", "everything", "--only", "no mirror", "--rounds", "2")
     assert [training.pool.augment.mirror for *_, training in trained] == [0.5, 0.0]
+    assert [training.pool.rounds for *_, training in trained] == [2, 2]
     drawn_pools = sorted(path.parent.parent.name for path in tmp_path.rglob("studies/**/patches.json"))
     assert drawn_pools == ["everything", "no_mirror"]
 

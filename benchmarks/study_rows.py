@@ -16,7 +16,7 @@ from lightgesture.benchmarks.tables import Cell
 from lightgesture.console import say
 from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
-from lightgesture.training.cnn import CnnTraining, fit
+from lightgesture.training.cnn import CnnTraining, in_integers, learn
 
 PARTS = ("hands", "accuracy", "macro_token", "worst_token", "worst_accuracy", "none_auroc")
 """Figures of a group of hands; see `hands.summary_table`."""
@@ -44,7 +44,8 @@ def fit_row(
     request = {"training": repr(replace(training, jobs=1)), "rows": chosen}
     digest = sha256(repr(request).encode()).hexdigest()[:12]
     parts = checkpoint_folder(folder / digest, request)
-    model = fit(study.pool, rows, study.classes, training, parts, lambda text: say(f"{name}: {text}"))
+    learnt = learn(study.pool, rows, study.classes, training, parts, lambda text: say(f"{name}: {text}"))
+    model = in_integers(learnt, training)
     classifier = CnnClassifier(model)
     seen = np.unique(study.pool.sources[rows])
     row: dict[str, Cell] = {

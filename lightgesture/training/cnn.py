@@ -111,18 +111,6 @@ def read_originals(training: CnnTraining, rows: Sequence[HandRow]) -> Originals:
     )
 
 
-def fit(
-    pool: PatchPool,
-    chosen: NDArray[np.bool_],
-    classes: tuple[str, ...],
-    training: CnnTraining,
-    folder: Path,
-    progress: Progress,
-) -> CnnModel:
-    """A net trained on the chosen rows of the pool, in integers, its temperature not yet fitted."""
-    return in_integers(learn(pool, chosen, classes, training, folder, progress), training)
-
-
 def learn(
     pool: PatchPool,
     chosen: NDArray[np.bool_],

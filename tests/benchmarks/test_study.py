@@ -234,7 +234,7 @@ def test_the_same_training_of_two_studies_has_one_folder(drawn, training, tmp_pa
     def told(_pool, _rows, _classes, _training, folder, _progress):
         raise TrainedError(folder)
 
-    monkeypatch.setattr(study_rows, "fit", told)
+    monkeypatch.setattr(study_rows, "learn", told)
     study = open_study(drawn, tmp_path / "pool", training, lambda _: None)
     every = np.ones(len(study.pool.hands), bool)
     first, last = every.copy(), every.copy()

@@ -97,8 +97,8 @@ def hand_nodes(classes: int, contours: int, size: str = "medium") -> tuple[Node,
 
     classes: of the answer. contours: numbers of the outline, 0 for a net without.
 
-    Full convolutions and not separable ones: of nets of as many products, those with depthwise layers learnt no more in as
-    many steps, and took longer to train and to run.
+    Full convolutions and not separable ones: of nets of as many products, those with depthwise layers learnt no more
+    in as many steps, and took longer to train and to run.
     """
     fine, middle, coarse = HAND_CHANNELS[size]
     seen = "none" if contours else "relu6"

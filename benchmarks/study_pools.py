@@ -34,11 +34,16 @@ def without_rendered(pool: PoolSettings) -> PoolSettings:
     return replace(pool, rendered=0)
 
 
+def without_mild(pool: PoolSettings) -> PoolSettings:
+    """The same pool without the copies that are hardly altered."""
+    return replace(pool, mild_share=0.0)
+
+
 def with_nothing(pool: PoolSettings) -> PoolSettings:
     """Copies as the pictures are, and no rendered hands."""
     for copy, light in WITHOUT.values():
         pool = changed(pool, copy, light)
-    return without_rendered(pool)
+    return without_mild(without_rendered(pool))
 
 
 def _leaving_out(name: str) -> Change:
@@ -48,6 +53,7 @@ def _leaving_out(name: str) -> Change:
 POOLS: Mapping[str, Change] = {
     EVERYTHING: lambda pool: pool,
     **{name: _leaving_out(name) for name in WITHOUT},
+    "no mild copies": without_mild,
     "no rendered hands": without_rendered,
     NOTHING: with_nothing,
 }

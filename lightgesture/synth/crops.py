@@ -48,11 +48,11 @@ class CropSettings:
     """How samples vary.
 
     size: range of the crop's side in pixels. palm: share of palms among tokens other than left/right. glove, water,
-    none: shares of gloved hands, of hands seen through water and of shapes that are no token. person: share of rooms
-    with somebody in them. yaw, pitch, roll: standard deviations in degrees. sideways: share of rings of thumb and
-    index that are turned further about their long axis, until the other fingers stand behind one another, by an angle
-    of the range turn, degrees. looseness: range, see `poses.token_pose`. backdrops: number of surroundings of each
-    kind, drawn once.
+    none: shares of gloved hands, of hands seen through water and of shapes that are no token. person: share of
+    rooms with somebody in them. yaw, pitch, roll: standard deviations in degrees. sideways: share of rings of thumb
+    and index that are turned further about their long axis, until the other fingers stand behind one another, by an
+    angle of the range turn, degrees. together: share of hands whose stretched fingers lie side by side. looseness:
+    range, see `poses.token_pose`. backdrops: number of surroundings of each kind, drawn once.
     """
 
     size: tuple[int, int] = (40, 112)
@@ -66,6 +66,7 @@ class CropSettings:
     roll: float = 13.0
     sideways: float = 0.0
     turn: tuple[float, float] = (15.0, 55.0)
+    together: float = 0.0
     looseness: tuple[float, float] = (0.4, 1.4)
     backdrops: int = 16
 
@@ -183,7 +184,8 @@ class CropMaker:
             @ rotation_y(sign * yaw)
         )
         view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)
-        pose = token_pose(shape, rng, float(rng.uniform(*settings.looseness)))
+        together = settings.together > 0.0 and bool(rng.uniform() < settings.together)
+        pose = token_pose(shape, rng, float(rng.uniform(*settings.looseness)), together=together)
         hand = render_hand(pose, view, look, draw_light(rng, water), Forearm(110.0, bare))
         if water is None:
             return hand

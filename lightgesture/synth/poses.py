@@ -71,6 +71,9 @@ POINTING = (-4.0, 0.0, 0.0, 0.0)
 V_SIGN = (9.0, -8.0, 0.0, 0.0)
 THREE = (12.0, -4.0, -14.0, 0.0)
 TOGETHER = (-6.0, -6.0, -6.0, -7.0)
+TOGETHER_SPREAD_DEG = 1.5
+STRETCHED_DEG = 60.0
+"""A finger whose middle joint is bent less is stretched."""
 
 TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
     "0": tuple(_shape(thumb) for thumb in THUMBS_FIST),
@@ -105,10 +108,13 @@ OTHER_SHAPES: dict[str, FloatArray] = {
 }  # fmt: skip
 
 
-def token_pose(token: str, rng: np.random.Generator, looseness: float = 1.0) -> HandPose:
+def token_pose(
+    token: str, rng: np.random.Generator, looseness: float = 1.0, *, together: bool = False
+) -> HandPose:
     """One person's way of making `token` (or a name of OTHER_SHAPES), with natural variation.
 
-    looseness scales every deviation: 0 is the first variant exactly, 1 natural, 2 careless.
+    looseness scales every deviation: 0 is the first variant exactly, 1 natural, 2 careless. together: stretched
+    fingers lie side by side.
     """
     variants = (OTHER_SHAPES[token],) if token in OTHER_SHAPES else TOKEN_SHAPES[token]
     if looseness <= 0.0:
@@ -117,6 +123,9 @@ def token_pose(token: str, rng: np.random.Generator, looseness: float = 1.0) -> 
     own = first + (second - first) * rng.uniform(0.0, 1.0)
     angles = variants[0] + (own - variants[0]) * min(OWN_WAY_PER_LOOSENESS * looseness, 1.0)
     angles = _loosened(angles, token, rng, looseness)
+    if together:
+        stretched = angles[1:, 2] < STRETCHED_DEG
+        angles[1:, 1] = np.where(stretched, TOGETHER + rng.normal(0.0, TOGETHER_SPREAD_DEG, 4), angles[1:, 1])
     wrist = rng.normal([-4.0, -2.0], [12.0, 7.0]) * looseness
     return HandPose(angles, wrist).clipped()
 

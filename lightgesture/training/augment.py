@@ -54,6 +54,29 @@ class AugmentSettings:
     light: LightSettings = field(default_factory=LightSettings)
 
 
+MILD = AugmentSettings(
+    rotation=6.0,
+    stretch=0.05,
+    shear=0.03,
+    background=0.0,
+    shift=0.02,
+    scale=0.04,
+    light=LightSettings(
+        gamma=0.1,
+        contrast=0.08,
+        gain=0.03,
+        gradient=0.1,
+        dark=0.0,
+        backlit=0.0,
+        water=0.0,
+        blur=0.15,
+        widest_blur=0.8,
+        noise=3.0,
+    ),
+)
+"""How far copies go that stay near their picture: a net that sees nothing but hard copies reads easy ones less well."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Canvas:
     """A hand on a square canvas. landmarks: float32 (21, 2) or None. corners: float32 (4, 2), of its box."""

@@ -1,4 +1,4 @@
-"""What a pool of patches is made of: altered copies, hidden hands, regions that are no hand, rendered hands."""
+"""What a pool of patches is made of: copies of hands, hidden hands, regions that are no hand, rendered hands."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -10,7 +10,7 @@ from lightgesture.features.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Image
 from lightgesture.models import NONE, TrainingSample
-from lightgesture.training.augment import MIRRORED_TOKENS, AugmentSettings, augment
+from lightgesture.training.augment import MILD, MIRRORED_TOKENS, AugmentSettings, augment
 from lightgesture.training.hidden_hands import HidingSettings, hide
 from lightgesture.training.light import relight
 from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
@@ -24,14 +24,16 @@ Random = np.random.Generator
 class PoolSettings:
     """How much is drawn and how.
 
-    copies: altered copies of each hand, 1 to 100. rounds: how often regions that are no hand are drawn from each
-    picture. hidden: share of the rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
+    copies: altered copies of each hand, 1 to 100. mild_share: copies of each hand besides that are hardly altered, over
+    `copies`, 0 to 1. rounds: how often regions that are no hand are drawn from each picture. hidden: share of the
+    rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
     patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
     contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered hands, and how
-    they vary. augment, negative, hiding: how copies, regions and hidden hands are made.
+    they vary. augment, mild, negative, hiding: how copies, mild copies, regions and hidden hands are made.
     """
 
     copies: int = 24
+    mild_share: float = 1 / 3
     rounds: int = 8
     hidden: float = 0.5
     patch: PatchSettings = field(default_factory=lambda: PatchSettings(size=32, context=1.1))
@@ -44,8 +46,14 @@ class PoolSettings:
             rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
         )
     )
+    mild: AugmentSettings = MILD
     negative: NegativeSettings = field(default_factory=NegativeSettings)
     hiding: HidingSettings = field(default_factory=HidingSettings)
+
+    @property
+    def mild_copies(self) -> int:
+        """Of each hand."""
+        return round(self.mild_share * self.copies)
 
     @property
     def kept(self) -> PatchSettings:
@@ -69,12 +77,24 @@ Draw = Callable[[Originals, PoolSettings, int, int, Random], Iterator[TrainingSa
 def _copies(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
+    return _altered(originals, settings.augment, first, last, random)
+
+
+def _mild(
+    originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
+) -> Iterator[TrainingSample]:
+    return _altered(originals, settings.mild, first, last, random)
+
+
+def _altered(
+    originals: Originals, settings: AugmentSettings, first: int, last: int, random: Random
+) -> Iterator[TrainingSample]:
     pictures = _behind(originals)
     tokens = {hand.token for hand in originals.hands}
-    unmirrored = replace(settings.augment, mirror=0.0)
+    unmirrored = replace(settings, mirror=0.0)
     for hand in originals.hands[first:last]:
         known = MIRRORED_TOKENS.get(hand.token, hand.token) in tokens
-        image, box, token = augment(hand, pictures, settings.augment if known else unmirrored, random)
+        image, box, token = augment(hand, pictures, settings if known else unmirrored, random)
         yield TrainingSample(
             image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
         )
@@ -137,8 +157,11 @@ KINDS: Mapping[str, Draw] = {
     "regions": _regions,
     "rendered": _rendered,
     "hidden": _hidden,
+    "mild": _mild,
 }
 """What draws the samples of a kind from the originals `first` to `last`; the place in this table seeds it."""
+COPIED = ("hands", "mild")
+"""Kinds with one sample for each hand."""
 
 
 def _relit(region: TrainingSample, settings: PoolSettings, random: Random) -> TrainingSample:

@@ -19,7 +19,7 @@ from lightgesture.features.contours import contour_length, contour_vectors
 from lightgesture.features.patch import cut_patch
 from lightgesture.models import NONE
 from lightgesture.results.atomic import replacing
-from lightgesture.training.patch_kinds import KINDS, Originals, PoolSettings
+from lightgesture.training.patch_kinds import COPIED, KINDS, Originals, PoolSettings
 
 Progress = Callable[[str, int, int], None]
 HANDS_A_TASK = 400
@@ -121,6 +121,7 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
         tasks += parts("regions", scenes, settings.rounds)
         tasks += parts("missed", len(originals.hands), settings.rounds)
         tasks += parts("hidden", len(originals.hands), settings.rounds)
+    tasks += parts("mild", len(originals.hands), settings.mild_copies)
     return tasks + parts("rendered", settings.rendered, 1)
 
 
@@ -156,5 +157,5 @@ def _draw(task: _Task) -> _Rows:
     contours = np.zeros((len(cut), contour_length(settings.contour)), np.float16)
     if len(cut):
         contours[:] = contour_vectors(np.ascontiguousarray(cut[:, inner, inner]), settings.contour)
-    hands = range(task.first, task.last) if task.kind == "hands" else [-1] * len(cut)
+    hands = range(task.first, task.last) if task.kind in COPIED else [-1] * len(cut)
     return _Rows(cut, contours, tokens, sources, list(hands))

@@ -127,8 +127,10 @@ def test_pools_differ_in_what_their_name_says():
     assert made["no water"].augment.light == replace(pool.augment.light, water=0.0)
     assert replace(made["no water"].augment, light=pool.augment.light) == pool.augment
     assert made["no rendered hands"] == replace(pool, rendered=0)
+    assert made["no mild copies"] == replace(pool, mild_share=0.0)
     nothing = made[NOTHING]
-    assert (nothing.rendered, nothing.augment.rotation, nothing.augment.light.blur) == (0, 0.0, 0.0)
+    assert (nothing.rendered, nothing.mild_copies) == (0, 0)
+    assert (nothing.augment.rotation, nothing.augment.light.blur) == (0.0, 0.0)
     assert (nothing.copies, nothing.patch) == (pool.copies, pool.patch)
 
 

@@ -39,6 +39,18 @@ def test_left_and_right_say_where_the_thumb_points(token):
     assert sides == {True, False}
 
 
+def test_fingers_lie_side_by_side_where_they_shall():
+    def gap(together):
+        maker = CropMaker(4, settings=CropSettings(backdrops=1, yaw=0.0, palm=1.0, together=together))
+        crops = [maker.sample("2") for _ in range(12)]
+        tips = [abs(crop.landmarks[8, 0] - crop.landmarks[12, 0]) for crop in crops]
+        return np.median([tip / np.ptp(crop.landmarks[:, 1]) for tip, crop in zip(tips, crops, strict=True)])
+
+    # A finger's width apart, and a V.
+    assert gap(1.0) < 0.17
+    assert gap(0.0) > 0.22
+
+
 def test_a_stream_repeats_by_seed_and_differs_by_purpose():
     first, again = ([crop.image for crop in CropMaker(7, settings=FEW).samples(4)] for _ in range(2))
     assert all(np.array_equal(a, b) for a, b in zip(first, again, strict=True))

@@ -45,7 +45,8 @@ def within_limits(pose):
 @pytest.mark.parametrize("token", [*TOKENS, *OTHER_SHAPES])
 def test_poses_stay_within_the_range_of_the_joints(token):
     rng = np.random.default_rng(5)
-    assert all(within_limits(token_pose(token, rng, looseness=2.0)) for _ in range(40))
+    for together in (False, True):
+        assert all(within_limits(token_pose(token, rng, 2.0, together=together)) for _ in range(40))
 
 
 @pytest.mark.parametrize("token", TOKENS)

@@ -54,7 +54,7 @@ def cut_patch(
     if side not in ("left", "right"):
         raise ValueError(f'side is {side!r}; it must be "left" or "right"')
     patch = _resized(_cut_square(as_bgr(image), box, settings.context), settings.size)
-    return patch[:, ::-1] if side == "right" else patch
+    return np.asarray(cv2.flip(patch, 1), np.uint8) if side == "right" else patch
 
 
 def cut_patches(

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.network import Quantisation
 from lightgesture.features.types import Image
 
 Float = NDArray[np.float32]
@@ -41,9 +42,15 @@ def channel_tables(picture: Image, settings: StandardSettings | None = None) -> 
     return tables
 
 
-def patch_tables(patches: NDArray[np.uint8], settings: StandardSettings | None = None) -> Float:
-    """float32 (n, 256, 3): `channel_tables` of small pictures, uint8 (n, h, w, 3), without their histograms, which take
-    longer to count than the pictures to sum."""
+def patch_levels(
+    patches: NDArray[np.uint8], quantisation: Quantisation, settings: StandardSettings | None = None
+) -> NDArray[np.int8]:
+    """int8 (n, 256, 3): the integers that stand for `channel_tables` of small pictures, uint8 (n, h, w, 3).
+
+    The pictures are summed without their histograms, which take longer to count, and the tables come in one pass from
+    the square roots to the integers. Against `channel_tables` and `quantise` an integer is one off where rounding is
+    near a tie.
+    """
     settings = settings or StandardSettings()
     means = np.empty((2, len(patches), 3), np.float32)
     for place, patch in enumerate(patches):
@@ -51,9 +58,15 @@ def patch_tables(patches: NDArray[np.uint8], settings: StandardSettings | None =
         means[1, place] = cv2.mean(patch)[:3]
     mean, square = means[0], means[1] * np.float32(1 / 255)
     deviation = np.sqrt(np.maximum(square - mean * mean, np.float32(0.0))) + np.float32(settings.evenness)
+    factor = np.float32(1.0 / quantisation.scale) / deviation
     # The 256 values run innermost while they are reckoned: NumPy is slow along an axis of three.
-    values = (_SINGLE_ROOTS - mean[:, :, None]) / deviation[:, :, None]
-    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32).transpose(0, 2, 1)
+    levels = _SINGLE_ROOTS * factor[:, :, None]
+    levels += (np.float32(quantisation.zero) - mean * factor)[:, :, None]
+    np.rint(levels, out=levels)
+    reach = np.rint(np.float32(settings.largest) * np.float32(1.0 / quantisation.scale))
+    np.maximum(levels, max(quantisation.zero - reach, np.float32(-128.0)), out=levels)
+    np.minimum(levels, min(quantisation.zero + reach, np.float32(127.0)), out=levels)
+    return np.ascontiguousarray(levels.astype(np.int8).transpose(0, 2, 1))
 
 
 def luma_table(picture: Image, settings: StandardSettings | None = None) -> tuple[Image, Float]:

@@ -19,7 +19,7 @@ from lightgesture.features.contours import ContourSettings, contour_vectors
 from lightgesture.features.network import IntegerNetwork
 from lightgesture.features.network_runner import Backend, Network
 from lightgesture.features.patch import PatchSettings, cut_patches
-from lightgesture.features.standardise import patch_tables
+from lightgesture.features.standardise import patch_levels
 from lightgesture.features.types import Box
 from lightgesture.models.calibration import none_where_small, softmax
 
@@ -68,7 +68,7 @@ class CnnClassifier:
         """Scores of patches, uint8 (n, size, size, 3), BGR -> float32 (n, k)."""
         model, network = self.model, self._network
         seen = np.empty(patches.shape, np.int8)
-        tables = np.ascontiguousarray(network.table(PATCH, patch_tables(patches)))
+        tables = patch_levels(patches, model.network.quantisation[PATCH])
         for place, patch in enumerate(patches):
             cv2.LUT(patch, tables[place, None], seen[place])
         inputs = {PATCH: seen}

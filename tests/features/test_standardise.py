@@ -3,29 +3,45 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.standardise import channel_tables, patch_tables
+from lightgesture.features.network import Quantisation, dequantise, quantise
+from lightgesture.features.standardise import StandardSettings, channel_tables, patch_levels
+
+FINE = Quantisation(3.0 / 127.5, -1)
 
 
+def seen(table, patch):
+    """What a table makes of the values that a patch has."""
+    return np.take_along_axis(table, patch.reshape(-1, 3).astype(int), axis=0)
+
+
+@pytest.mark.parametrize("quantisation", [FINE, Quantisation(0.05, 3), Quantisation(0.01, -100)])
 @pytest.mark.parametrize("dark", [1, 4, 60])
-def test_many_small_pictures_as_one_by_one(dark):
+def test_many_small_pictures_as_one_by_one(dark, quantisation):
     patches = (np.random.default_rng(dark).integers(0, 256, (5, 32, 32, 3)) // dark).astype(np.uint8)
-    for patch, table in zip(patches, patch_tables(patches), strict=True):
-        seen = np.take_along_axis(table, patch.reshape(-1, 3).astype(int), axis=0)
-        expected = np.take_along_axis(channel_tables(patch)[0], patch.reshape(-1, 3).astype(int), axis=0)
-        np.testing.assert_allclose(seen, expected, atol=1e-3)
+    for patch, levels in zip(patches, patch_levels(patches, quantisation), strict=True):
+        expected = quantise(channel_tables(patch)[0], quantisation)
+        off = np.abs(seen(levels, patch).astype(int) - seen(expected, patch))
+        assert off.max() <= 1
+        assert (off > 0).mean() < 0.05
+
+
+@pytest.mark.parametrize("largest", [1.0, 3.0])
+def test_values_far_from_the_mean_are_clipped(largest):
+    patches = np.full((1, 32, 32, 3), 90, np.uint8)
+    patches[0, :2, :2] = 255
+    coarse = Quantisation(0.05, 3)
+    values = dequantise(patch_levels(patches, coarse, StandardSettings(largest=largest)), coarse)
+    assert (values.min(), values.max()) == pytest.approx((-largest, largest), abs=0.03)
 
 
 def test_a_flat_picture_is_all_zeros():
     flat = np.full((2, 8, 8, 3), 77, np.uint8)
-    np.testing.assert_allclose(patch_tables(flat)[:, 77], 0.0, atol=1e-2)
+    assert np.abs(patch_levels(flat, FINE)[:, 77] - FINE.zero).max() <= 1
 
 
 def test_a_gain_of_each_channel_drops_out():
     bright = np.random.default_rng(2).integers(80, 250, (1, 32, 32, 3)).astype(np.uint8)
     tinted = np.rint(bright * np.array([0.9, 0.7, 0.5])).astype(np.uint8)
-    seen, same = (
-        np.take_along_axis(patch_tables(one)[0], one.reshape(-1, 3).astype(int), axis=0)
-        for one in (bright, tinted)
-    )
+    ours, same = (seen(dequantise(patch_levels(one, FINE)[0], FINE), one[0]) for one in (bright, tinted))
     # The added evenness weighs more in the darker picture.
-    assert np.abs(seen - same).max() < 0.25
+    assert np.abs(ours - same).max() < 0.25

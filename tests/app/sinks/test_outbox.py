@@ -21,13 +21,15 @@ class FakeSink:
         self.keeps_old = keeps_old
         self.opening, self.sending = list(opening), list(sending)
         self.sent, self.opened, self.closed = [], 0, 0
-        self.may_send = threading.Event()
+        self.may_open, self.may_send = threading.Event(), threading.Event()
+        self.may_open.set()
         self.may_send.set()
 
     def wants(self, record):
         return record.frames >= 0
 
     def open(self):
+        assert self.may_open.wait(5)
         self.opened += 1
         if self.opening and (error := self.opening.pop(0)):
             raise error
@@ -111,12 +113,15 @@ def test_a_sink_that_blocks_delays_nobody_and_the_oldest_is_dropped(heartbeat):
 def test_what_waited_for_too_long_is_not_sent_late(heartbeat, keeps_old, sent):
     """An instruction that reaches a vehicle when the link is back may meet another situation."""
     sink = FakeSink(opening=[SinkError("fake: down"), None], keeps_old=keeps_old)
-    settings = OutboxSettings(max_age_s=0.05, retry=BackoffSettings(first_s=0.15))
+    sink.may_open.clear()
+    # Long enough for a slow machine to send the second record while it is young.
+    settings = OutboxSettings(max_age_s=0.8, retry=BackoffSettings(first_s=0.001))
     outbox = Outbox(sink, lambda text: None, settings)
     outbox.start()
     outbox.put(heartbeat(1))
-    time.sleep(0.1)
+    time.sleep(0.9)
     outbox.put(heartbeat(2))
+    sink.may_open.set()
     wait_for(lambda: len(sink.sent) == len(sent))
     outbox.stop()
     assert sink.sent == sent

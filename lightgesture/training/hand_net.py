@@ -40,8 +40,8 @@ class NetSettings:
     rate: float = 3e-3
     matrix_rate: float = 0.05
     smoothing: float = 0.05
-    taught: float = 0.7
-    softness: float = 3.0
+    taught: float = 1.0
+    softness: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,9 +19,9 @@ def hook(tmp_path, code, **settings):
 
 
 def test_the_record_comes_on_standard_input_and_no_shell_is_in_between(tmp_path, instruction, heartbeat):
-    sink = hook(
-        tmp_path, f"import sys; open({str(tmp_path / 'out')!r}, 'w').write(sys.argv[1] + sys.stdin.read())"
-    )
+    code = f"import sys; open({str(tmp_path / 'out')!r}, 'w').write(sys.argv[1] + sys.stdin.read())"
+    # An emulated board takes more than the usual five seconds to start an interpreter.
+    sink = hook(tmp_path, code, timeout_s=60)
     assert sink.wants(instruction())
     assert not sink.wants(heartbeat())
     sink.open()

@@ -62,11 +62,12 @@ def patch_levels(
     # The 256 values run innermost while they are reckoned: NumPy is slow along an axis of three.
     levels = _SINGLE_ROOTS * factor[:, :, None]
     levels += (np.float32(quantisation.zero) - mean * factor)[:, :, None]
-    np.rint(levels, out=levels)
     reach = np.rint(np.float32(settings.largest) * np.float32(1.0 / quantisation.scale))
-    np.maximum(levels, max(quantisation.zero - reach, np.float32(-128.0)), out=levels)
-    np.minimum(levels, min(quantisation.zero + reach, np.float32(127.0)), out=levels)
-    return np.ascontiguousarray(levels.astype(np.int8).transpose(0, 2, 1))
+    if quantisation.zero - reach > -128 or quantisation.zero + reach < 127:
+        np.clip(levels, quantisation.zero - reach, quantisation.zero + reach, out=levels)
+    # One pass that rounds as NumPy does and saturates, where NumPy takes four.
+    rounded = cv2.add(levels.reshape(-1, 256), 0.0, dtype=cv2.CV_8S)  # type: ignore[call-overload]
+    return np.ascontiguousarray(rounded.reshape(levels.shape).transpose(0, 2, 1), np.int8)
 
 
 def luma_table(picture: Image, settings: StandardSettings | None = None) -> tuple[Image, Float]:

@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--copies",
         type=count,
         metavar="N",
-        help="altered copies of each hand (default: 24); time and disk grow",
+        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
     )
     parser.add_argument(
         "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 12000)"

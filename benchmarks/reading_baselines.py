@@ -11,6 +11,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from lightgesture.benchmarks.hands import (
     by_source_table,
     by_token_table,
@@ -26,49 +28,53 @@ from lightgesture.benchmarks.study_cli import (
     print_and_write,
     run_command,
     training_from,
-    whole,
 )
 from lightgesture.benchmarks.tables import Table
 from lightgesture.console import say
 from lightgesture.datasets import find_data, read_hands
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.vector import VectorSettings
-from lightgesture.models import CLASSES
+from lightgesture.models.descent import DescentSettings
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.svm_file import write_svm_model
 from lightgesture.models.train_svm import SvmSettings, train_svm
+from lightgesture.training.patch_kinds import Originals
 
 CONTOURS, PAPER = "contours", "paper"
 
 
-def contour_settings(centres: int) -> SvmSettings:
+def contour_settings(centres: int, steps: int) -> SvmSettings:
     """The shipped machine's, without gradients: these are reckoned in the fewest cells, and none is kept."""
-    features = VectorSettings(hog=HogSettings(cell=24))
-    return SvmSettings(features=features, directions=0, contour_weight=1.0, centres=centres)
+    features = VectorSettings(hog=HogSettings(rim=0, cell=16))
+    descent = DescentSettings(steps=steps)
+    return SvmSettings(
+        features=features, directions=0, dimensions=0, contour_weight=1.0, centres=centres, descent=descent
+    )
 
 
 def run_contours(args: argparse.Namespace) -> None:
-    """Train, write the model file, score it on `hands/val`."""
-    from lightgesture.benchmarks.study_data import training_of
-    from lightgesture.training.cnn import read_originals
-    from lightgesture.training.samples import read_rows
-    from lightgesture.training.stream import StreamSettings, stream
+    """Train on the pool, write the model file, score it on `hands/val`."""
+    from lightgesture.benchmarks.study_data import open_study
+    from lightgesture.training.pool_samples import PoolSampling, pool_samples
 
+    training = training_from(args)
     data = find_data(args.data)
-    training = training_of(data, seed=args.seed)
-    rows = [row for row in read_rows(training.data) if row.source not in training.without]
-    say(f"reading {len(rows)} hands")
-    originals = read_originals(training, rows)
-    how = StreamSettings(copies=args.copies)
-    samples = stream(originals.hands, originals.backgrounds, originals.scenes, how, args.seed)
-    classes = [name for name in CLASSES if name in {row.token for row in rows}]
-    model, _ = train_svm(
-        samples, contour_settings(args.centres), classes=classes, seed=args.seed, progress=_told
+    study = open_study(data, Path(args.pool), training, say)
+    samples = pool_samples(
+        study.pool,
+        Originals(study.hands),
+        np.ones(len(study.pool.tokens), bool),
+        np.ones(len(study.hands), bool),
+        training.pool,
+        PoolSampling(),
+        args.seed,
     )
+    settings = contour_settings(args.centres, args.steps)
+    model, _ = train_svm(samples, settings, classes=study.classes, seed=args.seed, progress=_told)
     write_svm_model(model, Path(args.out))
     say(f"wrote {args.out}")
     tables = val_tables(SvmClassifier(model), CONTOURS, data)
-    print_and_write(tables, args.json, {"copies": args.copies, "centres": args.centres, "seed": args.seed})
+    print_and_write(tables, args.json, {"centres": args.centres, "steps": args.steps, "seed": args.seed})
 
 
 def run_paper(args: argparse.Namespace) -> None:
@@ -121,17 +127,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     kinds = parser.add_subparsers(dest="kind", required=True)
     contours = kinds.add_parser(CONTOURS, help="numbers of the outline alone, with a radial machine")
     add_data_argument(contours)
+    add_pool_arguments(contours)
     contours.add_argument(
         "--out", default="contours.npz", metavar="NPZ", help="model file (default: contours.npz)"
     )
     contours.add_argument(
-        "--copies", type=whole, default=1, metavar="N", help="altered copies of a hand (default 1)"
-    )
-    contours.add_argument(
-        "--centres", type=positive, default=1500, metavar="N", help="of the machine (default 1500)"
-    )
-    contours.add_argument(
-        "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default 0)"
+        "--centres", type=positive, default=1000, metavar="N", help="of the machine (default 1000)"
     )
     contours.set_defaults(run=run_contours)
     paper = kinds.add_parser(PAPER, help="the paper's network in floating point; needs torch")

@@ -28,7 +28,6 @@ from lightgesture.benchmarks.study_pools import POOLS
 from lightgesture.commands.train_cnn import PRECISIONS, SIZES
 from lightgesture.console import say
 from lightgesture.datasets import find_data
-from lightgesture.models.loading import SHIPPED
 
 
 def run(args: argparse.Namespace) -> None:
@@ -77,16 +76,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parsers["folds"].add_argument(
         "--fold", type=int, choices=range(FOLDS), action="append", help="this fold alone (repeatable)"
     )
-    parsers["folds"].add_argument(
-        "--svm-card",
-        default=str(SHIPPED["svm"].with_suffix(".json")),
-        metavar="JSON",
-        help="whose answers to add",
-    )
-    parsers["subjects"].add_argument("--svm", action="store_true", help="train the SVM likewise")
-    parsers["subjects"].add_argument(
-        "--centres", type=positive, default=5000, metavar="N", help="of the SVM (default 5000)"
-    )
+    for kind in ("folds", "subjects"):
+        which = parsers[kind].add_mutually_exclusive_group()
+        which.add_argument("--svm", action="store_true", help="train the SVM likewise")
+        which.add_argument("--svm-alone", action="store_true", help="train no net, only the SVM")
+        parsers[kind].add_argument(
+            "--svm-steps", type=positive, default=10000, metavar="N", help="of the SVM (default 10000)"
+        )
     parsers["augmentation"].add_argument(
         "--only", choices=list(POOLS), action="append", help="this row alone (repeatable)"
     )

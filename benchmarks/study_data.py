@@ -13,7 +13,8 @@ from lightgesture.benchmarks.robustness import SEEN_SETS
 from lightgesture.datasets import Label, Sample, read_hands, read_table
 from lightgesture.errors import InputError
 from lightgesture.models import CLASSES
-from lightgesture.training.cnn import CnnTraining, read_originals
+from lightgesture.training.cnn import CnnTraining
+from lightgesture.training.originals import read_originals
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows

@@ -21,7 +21,6 @@ from lightgesture.benchmarks.study_rows import (
     COLUMNS,
     NOTE,
     Rows,
-    card_folds,
     fit_row,
     mean_and_worst,
     scored_cells,
@@ -31,8 +30,10 @@ from lightgesture.commands.train_cnn import SIZES
 from lightgesture.console import say
 from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
-from lightgesture.training.cnn import CnnTraining, read_originals
+from lightgesture.training.cnn import CnnTraining
 from lightgesture.training.kept_sources import kept_out
+from lightgesture.training.originals import read_originals
+from lightgesture.training.patch_kinds import Originals
 from lightgesture.training.patch_pool import rows_without
 
 FOLDS = 5
@@ -44,20 +45,20 @@ STEPS = (1000, 3000, 10000)
 
 
 def folds(study: Study, training: CnnTraining, folder: Path, args: argparse.Namespace) -> list[Table]:
-    """A net for each fold of the sources; the SVM's held-out answers, from its card, in the same folds."""
+    """A net for each fold of the sources, and if wanted the SVM likewise."""
     number = np.array([fold_of(str(source), FOLDS) for source in study.sources])
     rows: Rows = []
+    svm: Rows = []
     for fold in args.fold or range(FOLDS):
         held = number == fold
         # With few sources a fold may have none.
         if held.any():
             chosen = rows_without(study.pool, study.sources, held)
-            rows.append(fit_row(study, f"cnn fold {fold}", chosen, held, training, folder))
-    rows += mean_and_worst("cnn", rows)
-    card = Path(args.svm_card)
-    if card.is_file():
-        svm = card_folds(card, FOLDS)
-        rows += [*svm, *mean_and_worst("svm", svm)]
+            if not args.svm_alone:
+                rows.append(fit_row(study, f"cnn fold {fold}", chosen, held, training, folder))
+            if args.svm or args.svm_alone:
+                svm.append(_svm_row(study, f"svm fold {fold}", chosen, held, training, args.svm_steps))
+    rows += [*mean_and_worst("cnn", rows), *svm, *mean_and_worst("svm", svm)]
     return [Table("folds", f"{FOLDS} folds over the sources of hands/train", COLUMNS, tuple(rows), NOTE)]
 
 
@@ -67,29 +68,34 @@ def subjects(study: Study, training: CnnTraining, folder: Path, args: argparse.N
     if not held.any():
         raise InputError(f"{study.data}: names no source with two subjects or more; this study needs some")
     chosen = rows_without(study.pool, study.sources, held)
-    rows = [fit_row(study, "cnn", chosen, held, training, folder)]
-    if args.svm:
-        rows.append(_svm_row(study, held, training, args))
+    rows: Rows = []
+    if not args.svm_alone:
+        rows.append(fit_row(study, "cnn", chosen, held, training, folder))
+    if args.svm or args.svm_alone:
+        rows.append(_svm_row(study, "svm", chosen, held, training, args.svm_steps))
     title = "Held-out subjects of sources that are trained on"
     return [Table("subjects", title, COLUMNS, tuple(rows), NOTE)]
 
 
-def _svm_row(study: Study, held: Mask, training: CnnTraining, args: argparse.Namespace) -> dict[str, Cell]:
-    """The SVM on the other hands, with the same backgrounds and scenes as the shipped one."""
+def _svm_row(
+    study: Study, name: str, chosen: Mask, held: Mask, training: CnnTraining, steps: int
+) -> dict[str, Cell]:
+    """The SVM on the same rows of the pool, and on the hands that they are copies of."""
+    from lightgesture.models.descent import DescentSettings
     from lightgesture.models.svm import SvmClassifier
     from lightgesture.models.train_svm import SvmSettings, train_svm
-    from lightgesture.training.stream import StreamSettings, stream
+    from lightgesture.training.pool_samples import PoolSampling, pool_samples
 
-    originals = read_originals(training, ())
-    hands = [study.hands[place] for place in np.flatnonzero(~held).tolist()]
-    how = StreamSettings() if args.copies is None else StreamSettings(copies=min(args.copies, 10))
-    samples = stream(hands, originals.backgrounds, originals.scenes, how, args.seed)
-    say("svm: training")
-    model, _ = train_svm(samples, SvmSettings(centres=args.centres), classes=study.classes, seed=args.seed)
+    say(f"{name}: training")
+    samples = pool_samples(
+        study.pool, Originals(study.hands), chosen, ~held, training.pool, PoolSampling(), training.seed
+    )
+    settings = SvmSettings(descent=DescentSettings(steps=steps))
+    model, _ = train_svm(samples, settings, classes=study.classes, seed=training.seed)
     classifier = SvmClassifier(model)
     return {
-        "row": "svm",
-        "sources": len({hand.source for hand in hands}),
+        "row": name,
+        "sources": len(np.unique(study.sources[~held])),
         **scored_cells("held", answers_of(classifier, study, held)),
         **scored_cells("val", val_answers(classifier, study)),
     }

@@ -1,21 +1,16 @@
 """One training as a row: a net or what a card tells, scored on hands that it did not see and on `hands/val`."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from lightgesture.benchmarks.hands import HandAnswer, summary_cells
-from lightgesture.benchmarks.scorer import share
 from lightgesture.benchmarks.study_data import Mask, Study, answers_of, val_answers
 from lightgesture.benchmarks.tables import Cell
 from lightgesture.console import say
-from lightgesture.datasets import fold_of
-from lightgesture.errors import InputError
 from lightgesture.training.cnn import CnnTraining, in_integers, learn
 
 PARTS = ("hands", "accuracy", "macro_token", "worst_token", "worst_accuracy", "none_auroc")
@@ -64,28 +59,6 @@ def scored_cells(part: str, answers: Sequence[HandAnswer]) -> dict[str, Cell]:
     """Figures of one part, their names beginning with it."""
     cells = summary_cells(part, answers) if answers else {}
     return {f"{part}_{name}": cells.get(name) for name in PARTS}
-
-
-def card_folds(card: Path, count: int) -> Rows:
-    """Accuracy of the sources of each fold as a card tells it; every source was answered by a machine without it.
-
-    Raises InputError for a card without such answers.
-    """
-    try:
-        sources: dict[str, dict[str, Any]] = json.loads(card.read_text(encoding="utf-8"))["held_out_sources"][
-            "per_source"
-        ]
-        rows: Rows = []
-        for fold in range(count):
-            own = [value for name, value in sources.items() if fold_of(name, count) == fold]
-            hands = sum(int(value["pictures"]) for value in own)
-            right = sum(round(float(value["accuracy"] or 0.0) * value["pictures"]) for value in own)
-            rows.append(
-                {"row": f"svm fold {fold}", "held_hands": hands, "held_accuracy": share(right, hands)}
-            )
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{card}: is no card with held-out sources ({error!r}); give --svm-card") from error
-    return rows
 
 
 def mean_and_worst(model: str, rows: Rows) -> Rows:

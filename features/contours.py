@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.hu import HU_COUNT, hu_moments, log_signed
-from lightgesture.features.shape import convex_hull, convexity_defects
+from lightgesture.features.shape import convex_hull, defect_depths
 
 Float = NDArray[np.float32]
 Mask = NDArray[np.uint8]
@@ -107,7 +107,7 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     perimeter = max(float(cv2.arcLength(contour, True)), 1.0)
     _, _, width, height = cv2.boundingRect(contour)
     # Outlines in a triangle count as whole: the shipped classifiers learnt from numbers in which they do.
-    depths = convexity_defects(contour).depth / settings.size if len(hull) > 3 else np.zeros(0)
+    depths = defect_depths(contour) / settings.size if len(hull) > 3 else np.zeros(0)
     shape = [
         area / settings.size**2,
         area / hull_area,
@@ -146,12 +146,12 @@ def _hand_likeness(patch: NDArray[np.uint8], settings: ContourSettings) -> NDArr
     """The patch along the colour direction in which its middle differs from its rim, stretched to 0 to 255."""
     regions = _regions(settings)
     colours = np.asarray(cv2.LUT(patch, _square_roots()), np.float64).reshape(-1, 3)
-    centre_in, centre_out = regions.shares @ colours
+    centres = regions.shares @ colours
     # The scatter round both centres: the mean products less the products of the means.
     scatter = (colours * regions.both).T @ colours
-    scatter -= np.outer(centre_in, centre_in) + np.outer(centre_out, centre_out)
-    scatter += settings.evenness * np.eye(3)
-    difference = (centre_in - centre_out)[:, None]
+    scatter -= centres.T @ centres
+    scatter += regions.evenness
+    difference = (centres[0] - centres[1])[:, None]
     direction = np.asarray(cv2.solve(scatter, difference, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)
     values = colours @ direction
     mean, deviation = (float(number[0, 0]) for number in cv2.meanStdDev(values))
@@ -168,12 +168,14 @@ def _square_roots() -> NDArray[np.float64]:
 
 class _Regions(NamedTuple):
     """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (2, p), of each pixel in
-    the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`."""
+    the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`.
+    evenness: (3, 3), what is added to the scatter."""
 
     middle: NDArray[np.intp]
     shares: NDArray[np.float64]
     both: NDArray[np.float64]
     bump: NDArray[np.float64]
+    evenness: NDArray[np.float64]
 
 
 @lru_cache(maxsize=4)
@@ -193,4 +195,5 @@ def _regions(settings: ContourSettings) -> _Regions:
         shares,
         shares.sum(axis=0)[:, None],
         settings.prior * (bump - bump.mean()) / bump.std(),
+        settings.evenness * np.eye(3),
     )

@@ -20,8 +20,8 @@ class PatchSettings:
         when a box is too small, larger gives the room behind the hand more say.
     """
 
-    size: int = 48
-    context: float = 0.95
+    size: int = 32
+    context: float = 1.1
 
 
 def as_bgr(image: NDArray[Any]) -> Image:

@@ -25,12 +25,14 @@ ROWS = 4096
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Described:
-    """Samples. vectors: (n, d). truth: int (n,), index of the class. sources: (n,), names. original: bool (n,)."""
+    """Samples. vectors: (n, d). truth: int (n,), index of the class. sources: (n,), names. original: bool (n,).
+    weights: float32 (n,)."""
 
     vectors: NDArray[np.float16]
     truth: NDArray[np.int64]
     sources: NDArray[np.str_]
     original: NDArray[np.bool_]
+    weights: Float
 
 
 def describe(
@@ -43,6 +45,7 @@ def describe(
     truth: list[int] = []
     sources: list[str] = []
     original: list[bool] = []
+    weights: list[float] = []
     for sample in samples:
         if sample.token not in index:
             raise ModelError(f"{sample.source}: {sample.token!r} is no class; known are {', '.join(classes)}")
@@ -53,6 +56,7 @@ def describe(
         truth.append(index[sample.token])
         sources.append(sample.source)
         original.append(sample.original)
+        weights.append(sample.weight)
         if len(patches) == CHUNK:
             vectors.append(feature_vectors(np.stack(patches), settings).astype(np.float16))
             patches.clear()
@@ -61,7 +65,13 @@ def describe(
         vectors.append(feature_vectors(np.stack(patches), settings).astype(np.float16))
     if not vectors:
         raise ModelError("there are no samples; give a manifest or folders with pictures")
-    return Described(np.concatenate(vectors), np.array(truth), np.array(sources), np.array(original))
+    return Described(
+        np.concatenate(vectors),
+        np.array(truth),
+        np.array(sources),
+        np.array(original),
+        np.array(weights, np.float32),
+    )
 
 
 def in_parts(rows: NDArray[np.float16]) -> Iterator[Float]:

@@ -18,7 +18,8 @@ class TrainingSample:
 
     image: uint8 (height, width, 3), BGR. box: outline, pixels of `image`. side: the diver's own, "left" or "right".
     token: class name. source: the person, room and camera; a held-out fold holds whole sources.
-    original: False for an altered copy; only originals count in scores.
+    original: False for an altered copy; only originals count in scores. weight: how much it counts in training
+    beside others of its class and source, above 0.
     """
 
     image: Image
@@ -27,3 +28,4 @@ class TrainingSample:
     token: str
     source: str
     original: bool = True
+    weight: float = 1.0

@@ -20,7 +20,7 @@ from lightgesture.models.errors import ModelError
 Float = NDArray[np.float32]
 
 KIND: Final = "svm"
-FORMAT: Final = 1
+FORMAT: Final = 2
 """Version of the file; raised whenever an older reader would misread a newer file."""
 
 ARRAYS: Final = {

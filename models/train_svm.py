@@ -1,24 +1,25 @@
 """Training of the support vector machine from samples; needs no manifest, and NumPy alone.
 
-A least-squares support vector machine of fixed size (Suykens, Van Gestel, De Brabanter, De Moor and Vandewalle,
-"Least Squares Support Vector Machines", 2002, chapter 6): the radial kernel is approximated by its values at a few
-vectors drawn from the data (Nyström; Williams and Seeger, NIPS 2001), and there each class against all others
-is a ridge regression. Its sums over the samples add up, so a fold is held out by subtracting its own sums, and
-all folds together cost one pass.
+It starts as a least-squares support vector machine of fixed size (Suykens, Van Gestel, De Brabanter, De Moor and
+Vandewalle, "Least Squares Support Vector Machines", 2002, chapter 6): the radial kernel is approximated by its values
+at a few vectors drawn from the data (Nyström; Williams and Seeger, NIPS 2001), and there each class against all others
+is a ridge regression. From there on its vectors, its projection and its weights are learnt together (`descent`).
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.vector import VectorSettings
+from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.calibration import fit_temperature, softmax
+from lightgesture.models.descent import DescentSettings, Machine, descend
 from lightgesture.models.errors import ModelError
-from lightgesture.models.fixed_size import accumulate, held_out_scores, kernel_basis, solve
-from lightgesture.models.projection import Progress, describe, fit_projection, in_parts
+from lightgesture.models.fixed_size import fit_fixed_size
+from lightgesture.models.projection import Described, Progress, describe, fit_projection, in_parts
 from lightgesture.models.samples import CLASSES, TrainingSample
+from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.svm_file import SvmModel
 
 Float = NDArray[np.float32]
@@ -29,31 +30,33 @@ class SvmSettings:
     """How the machine is trained.
 
     features: how a patch becomes a vector. smallest_hand: longer side of the smallest box that is read, pixels.
-    directions: principal directions of the gradients that are kept, 32 to 256; more cost time and size. 0 leaves the
-        gradients out.
-    contour_weight: variance of the contour numbers against that of the gradients, 0 to 1; alone they need any above 0.
-    centres: expansion vectors, 500 to 8000. Accuracy grows with their logarithm, time and size with their number.
-    width: gamma times the mean squared distance of two samples, 0.5 to 8; larger is a narrower kernel.
-    altered_weight: weight of an altered copy beside 1 of an original; smaller reads plain pictures better,
-        larger those in bad light and badly boxed ones.
-    ridge: weight of the squared norm of the machine against the mean squared error.
-    folds: groups of sources that are held out in turn for scores and temperature.
+    directions: principal directions of the gradients that the machine learns from, 64 to 512; they cost time in
+        training alone. 0 leaves the gradients out.
+    dimensions: of the space of the kernel, beside one for each contour number, 16 to 128; more cost time and size.
+    contour_weight: variance of the contour numbers against that of the gradients at first, 0 to 1; alone they need
+        any above 0.
+    centres: expansion vectors, 200 to 4000; more read a little better and cost time and size.
+    width: at first, gamma times the mean squared distance of two samples, 0.5 to 8; larger is a narrower kernel.
+    ridge: at first, weight of the squared norm of the machine against the mean squared error.
+    descent: how it is learnt from there.
+    one_in: of so many groups of sources one is kept from the machine, for the temperature and the scores.
     """
 
     features: VectorSettings = field(default_factory=VectorSettings)
     smallest_hand: int = 12
-    directions: int = 96
+    directions: int = 256
+    dimensions: int = 64
     contour_weight: float = 0.15
-    centres: int = 5000
+    centres: int = 1000
     width: float = 2.0
-    altered_weight: float = 0.33
     ridge: float = 1e-5
-    folds: int = 5
+    descent: DescentSettings = field(default_factory=DescentSettings)
+    one_in: int = 12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HeldOut:
-    """Answers for the samples of each fold by a machine that saw none of its sources.
+    """Answers for samples by a machine that saw none of their sources.
 
     probabilities: float32 (n, classes). truth: int (n,), index of the class. sources: (n,), names. original: bool
     (n,), False for altered copies.
@@ -73,7 +76,7 @@ def train_svm(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> tuple[SvmModel, HeldOut]:
-    """Train on samples of at least two of `classes`.
+    """Train on samples of at least two of `classes`; the answers are for samples of the sources that are kept out.
 
     The same samples, settings and seed give the same model on one machine with one number of threads.
     Raises ModelError for a sample of an unknown class or of an unreadable box, and for less than two classes.
@@ -83,40 +86,82 @@ def train_svm(
     data = describe(samples, settings.features, classes, progress)
     if len(np.unique(data.truth)) < 2:
         raise ModelError("the samples hold less than two classes; a classifier needs at least two")
+    kept = assign_folds(data.sources, settings.one_in) == settings.one_in - 1
     mean, projection = fit_projection(
         data.vectors, settings.features, settings.directions, settings.contour_weight
     )
-    projected = [(part - mean) @ projection for part in in_parts(data.vectors)]
-    points = np.asarray(np.concatenate(projected), np.float32)
-    random = np.random.default_rng(seed)
-    chosen = random.choice(len(points), min(settings.centres, len(points)), replace=False)
-    centres = points[np.sort(chosen)].astype(np.float16).astype(np.float32)
-    gamma = settings.width / (2.0 * float(points.var(axis=0).sum()))
-    basis = kernel_basis(centres, gamma)
-    folds = assign_folds(data.sources, settings.folds)
-    weights = sample_weights(data.truth, data.sources)
-    weights = weights * np.where(data.original, 1.0, settings.altered_weight).astype(np.float32)
-    sums = accumulate(points, centres, gamma, basis, data.truth, weights, folds, len(classes), progress)
-    scores = held_out_scores(points, centres, gamma, basis, sums, folds, settings.ridge)
-    temperature = fit_temperature(scores[data.original], data.truth[data.original])
-    solution = solve(sums, settings.ridge)
+    learning = _rows_of(data, ~kept)
+    reduced = np.concatenate(
+        [((part - mean) @ projection).astype(np.float16) for part in in_parts(learning.vectors)]
+    )
+    weights = sample_weights(learning.truth, learning.sources) * learning.weights
+    machine = _start(reduced, learning.truth, weights, len(classes), settings, seed, progress)
+    machine = descend(machine, reduced, learning.truth, weights, settings.descent, seed, progress)
     model = SvmModel(
         classes=tuple(classes),
         features=settings.features,
         mean=mean,
-        projection=projection,
-        centres=centres,
-        weights=(basis @ solution[:-1]).astype(np.float32),
-        bias=solution[-1].astype(np.float32),
-        gamma=gamma,
-        temperature=temperature,
+        # As the file stores them, so that what is scored is what is shipped.
+        projection=(projection @ machine.projection).astype(np.float16).astype(np.float32),
+        centres=machine.centres.astype(np.float16).astype(np.float32),
+        weights=machine.weights,
+        bias=machine.bias,
+        gamma=1.0,
+        temperature=1.0,
         smallest_hand=settings.smallest_hand,
     )
-    return model, HeldOut(softmax(scores, temperature), data.truth, data.sources, data.original)
+    return _calibrated(model, _rows_of(data, kept))
 
 
 def _silent(_step: str, _done: int, _total: int) -> None:
     pass
+
+
+def _rows_of(data: Described, chosen: NDArray[np.bool_]) -> Described:
+    return Described(
+        data.vectors[chosen],
+        data.truth[chosen],
+        data.sources[chosen],
+        data.original[chosen],
+        data.weights[chosen],
+    )
+
+
+def _start(
+    reduced: NDArray[np.float16],
+    truth: NDArray[np.int64],
+    weights: Float,
+    classes: int,
+    settings: SvmSettings,
+    seed: int,
+    progress: Progress,
+) -> Machine:
+    """The machine of fixed size in the first dimensions."""
+    contour = block_lengths(settings.features)[1]
+    gradients = reduced.shape[1] - contour
+    first = np.arange(reduced.shape[1])
+    first = first[(first < settings.dimensions) | (first >= gradients)]
+    points = np.concatenate([part[:, first] for part in in_parts(reduced)])
+    scale = np.float32(np.sqrt(settings.width / (2.0 * float(points.var(axis=0).sum()))))
+    points *= scale
+    random = np.random.default_rng(seed)
+    centres = points[np.sort(random.choice(len(points), min(settings.centres, len(points)), replace=False))]
+    targets = np.where(truth[:, None] == np.arange(classes), np.float32(1.0), np.float32(-1.0))
+    own, bias = fit_fixed_size(points, centres, 1.0, targets, weights, settings.ridge, progress)
+    projection = np.zeros((reduced.shape[1], len(first)), np.float32)
+    projection[first, np.arange(len(first))] = scale
+    return Machine(projection, centres, own, bias)
+
+
+def _calibrated(model: SvmModel, kept: Described) -> tuple[SvmModel, HeldOut]:
+    """The model with its temperature, and its answers for what was kept from it; the temperature is that of
+    originals where there are any."""
+    classifier = SvmClassifier(model)
+    scores = np.concatenate([classifier.scores(part) for part in in_parts(kept.vectors)])
+    fitting = kept.original if kept.original.any() else np.ones(len(scores), bool)
+    temperature = fit_temperature(scores[fitting], kept.truth[fitting])
+    answers = HeldOut(softmax(scores, temperature), kept.truth, kept.sources, kept.original)
+    return replace(model, temperature=temperature), answers
 
 
 def assign_folds(sources: NDArray[np.str_], folds: int) -> NDArray[np.int64]:

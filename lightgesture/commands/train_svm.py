@@ -26,13 +26,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--copies",
         type=count,
         metavar="N",
-        help="altered copies of each hand (default: 4); time grows with them",
+        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
     )
     parser.add_argument(
         "--centres",
         type=count,
         metavar="N",
-        help="vectors of the machine (default: 5000); size grows with them",
+        help="vectors of the machine (default: 1000); size grows with them",
+    )
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 40000)")
+    parser.add_argument(
+        "--jobs",
+        type=count,
+        default=1,
+        metavar="N",
+        help="processes that draw (default: 1); changes nothing else",
     )
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
@@ -42,30 +50,32 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.models import ModelError
     from lightgesture.models.train_svm import SvmSettings
     from lightgesture.training.card import summary
-    from lightgesture.training.stream import StreamSettings
-    from lightgesture.training.svm import SvmTraining, train_to_file
+    from lightgesture.training.svm import SvmTraining, train_svm_to_file
 
     if args.data is None and not args.synthetic:
         raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
+    for name in ("copies", "centres", "jobs"):
+        if getattr(args, name) == 0:
+            raise UsageError(f"--{name} is 0; it must be 1 or more")
     out = model_path(args.out)
-    stream, svm = StreamSettings(), SvmSettings()
-    if args.copies is not None:
-        stream = replace(stream, copies=args.copies)
-    if args.centres is not None:
-        svm = replace(svm, centres=max(args.centres, 1))
     training = SvmTraining(
         data=Path(args.data) if args.data else None,
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
         without=tuple(args.without),
-        synthetic=args.synthetic,
         seed=args.seed,
-        stream=stream,
-        svm=svm,
+        jobs=args.jobs,
     )
+    pool, svm = replace(training.pool, rendered=args.synthetic), SvmSettings()
+    if args.copies is not None:
+        pool = replace(pool, copies=args.copies)
+    if args.centres is not None:
+        svm = replace(svm, centres=args.centres)
+    if args.steps is not None:
+        svm = replace(svm, descent=replace(svm.descent, steps=args.steps))
     try:
         with StepBars(args.quiet) as bars:
-            card = train_to_file(training, out, bars.show)
+            card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, bars.show)
     except ModelError as error:
         raise UsageError(str(error)) from error
     if not args.quiet:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lightgesture.models import NONE
 from lightgesture.models.train_svm import HeldOut
+from lightgesture.training.patch_kinds import Originals
 from lightgesture.training.samples import HandRow
 
 LIMITS = (
@@ -21,13 +22,28 @@ LIMITS = (
 """What a user of a model has to know, whatever it was trained on."""
 
 
-def data_section(rows: Sequence[HandRow]) -> dict[str, Any]:
-    """Counts of pictures, sources, classes and licences as far as stated."""
+def data_section(
+    rows: Sequence[HandRow], originals: Originals, without: Sequence[str], rendered: int
+) -> dict[str, Any]:
+    """Counts of pictures, sources, classes and licences as far as stated, and what stood beside the hands.
+
+    without: sources left out. rendered: number of rendered hands.
+    """
     return {
         "pictures": len(rows),
         "sources": len({row.source for row in rows}),
         "per_class": dict(sorted(Counter(row.token for row in rows).items())),
         "licences": dict(Counter(row.licence for row in rows).most_common()),
+        "backgrounds": {
+            "pictures": len(originals.backgrounds),
+            "sources": sorted({scene.source for scene in originals.backgrounds}),
+        },
+        "scenes": {
+            "pictures": len(originals.scenes),
+            "sources": len({scene.source for scene in originals.scenes}),
+        },
+        "left_out": list(without),
+        "rendered_hands": rendered,
     }
 
 

@@ -22,11 +22,11 @@ from lightgesture.training.card import LIMITS, data_section, held_out_section, o
 from lightgesture.training.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.hand_samples import HandSamples
 from lightgesture.training.kept_sources import held_out_hands, keeps_whole_sources, kept_out
-from lightgesture.training.negatives import read_backgrounds, read_scenes
+from lightgesture.training.originals import read_originals
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
-from lightgesture.training.samples import HandRow, load_hand, read_rows
-from lightgesture.training.time_left import TimeLeft
+from lightgesture.training.samples import HandRow, read_rows
+from lightgesture.training.time_left import tenths
 
 if TYPE_CHECKING:
     from lightgesture.training.hand_net import LearntNet, NetSettings
@@ -80,7 +80,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     folder = checkpoint_folder(out, request)
     progress(f"reading {len(rows)} hands")
     originals = read_originals(training, rows)
-    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, _told(progress))
+    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
     kept = kept_out(originals.hands, training.one_in)
     present = {row.token for row in rows}
     classes = tuple(name for name in CLASSES if name in present)
@@ -99,16 +99,6 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     write_cnn_model(model, out)
     write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
     return card
-
-
-def read_originals(training: CnnTraining, rows: Sequence[HandRow]) -> Originals:
-    """All pictures. Raises InputError."""
-    negative = training.pool.negative
-    return Originals(
-        [load_hand(row) for row in rows],
-        [scene for folder in training.backgrounds for scene in read_backgrounds(folder, negative)],
-        read_scenes(training.scenes, negative) if training.scenes else (),
-    )
 
 
 def learn(
@@ -183,19 +173,7 @@ def make_card(
         "classes": list(model.classes),
         "use": "bare hands of a diver facing the camera, in boxes of lightgesture's selector",
         "limits": list(LIMITS),
-        "data": {
-            **data_section(rows),
-            "backgrounds": {
-                "pictures": len(originals.backgrounds),
-                "sources": sorted({scene.source for scene in originals.backgrounds}),
-            },
-            "scenes": {
-                "pictures": len(originals.scenes),
-                "sources": len({scene.source for scene in originals.scenes}),
-            },
-            "left_out": list(training.without),
-            "rendered_hands": training.pool.rendered,
-        },
+        "data": data_section(rows, originals, training.without, training.pool.rendered),
         "training": {
             "seed": training.seed,
             "steps": {"net": training.steps, "each_teacher": training.teacher_steps},
@@ -213,15 +191,3 @@ def make_card(
         "held_out_sources": held_out_section(held_out, model.classes),
         "operating_points": operating_points(held_out, model.classes),
     }
-
-
-def _told(progress: Progress) -> Callable[[str, int, int], None]:
-    """Every tenth of a step as a line."""
-    clocks: dict[str, TimeLeft] = {}
-
-    def show(step: str, done: int, total: int) -> None:
-        left = clocks.setdefault(step, TimeLeft(total, done))
-        if done * 10 // total > (done - 1) * 10 // total:
-            progress(f"{step}: {done} of {total}, {left.told(done)}")
-
-    return show

@@ -25,3 +25,15 @@ class TimeLeft:
         if seconds >= HOUR_S:
             return f"{seconds / HOUR_S:.1f} h left"
         return f"{seconds / MINUTE_S:.0f} min left" if seconds >= MINUTE_S else f"{seconds:.0f} s left"
+
+
+def tenths(progress: Callable[[str], None]) -> Callable[[str, int, int], None]:
+    """Tells every tenth of a step as a line, with the time left."""
+    clocks: dict[str, TimeLeft] = {}
+
+    def show(step: str, done: int, total: int) -> None:
+        left = clocks.setdefault(step, TimeLeft(total, done))
+        if done * 10 // total > (done - 1) * 10 // total:
+            progress(f"{step}: {done} of {total}, {left.told(done)}")
+
+    return show

@@ -12,9 +12,10 @@ from lightgesture.features.hog import HogSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings
 from lightgesture.models import TrainingSample
+from lightgesture.models.descent import DescentSettings
 from lightgesture.models.train_svm import SvmSettings
 
-SMALL = VectorSettings(PatchSettings(size=24), HogSettings(cell=6), ContourSettings(size=24))
+SMALL = VectorSettings(PatchSettings(size=24), HogSettings(rim=0, cell=6), ContourSettings(size=24))
 """Features that take little time."""
 
 
@@ -42,7 +43,8 @@ def changed() -> Change:
 @pytest.fixture
 def quick() -> SvmSettings:
     """Settings that train in well under a second."""
-    return SvmSettings(features=SMALL, directions=16, centres=60, folds=3)
+    descent = DescentSettings(steps=100, batch=64)
+    return SvmSettings(features=SMALL, directions=16, dimensions=8, centres=60, descent=descent, one_in=3)
 
 
 @pytest.fixture

@@ -4,12 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.models import TrainingSample
 from lightgesture.training.augment import AugmentSettings, augment, hand_mask, shifted_box
 from lightgesture.training.light import LightSettings, relight, under_water
 from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
 from lightgesture.training.samples import LabelledHand, landmark_box
-from lightgesture.training.stream import StreamSettings, stream
 
 STILL = LightSettings(gamma=0, contrast=0, gain=0, gradient=0, dark=0, backlit=0, water=0, blur=0, noise=0)
 """Light that changes nothing."""
@@ -130,25 +128,3 @@ def test_a_missed_hand_overlaps_it_little() -> None:
     found = [missed_hand(hand, NegativeSettings(), random) for _ in range(200)]
     assert any(sample is not None for sample in found)
     assert any(sample is None for sample in found)
-
-
-def test_the_stream_holds_originals_copies_and_regions() -> None:
-    hands = [thumb_left("left"), thumb_left("right"), thumb_left("none")]
-    background = Scene(np.random.default_rng(1).integers(0, 256, (60, 80, 3)).astype(np.uint8), (), (), "sea")
-    samples = list(stream(hands, [background], [], StreamSettings(copies=2), 0))
-    originals = [sample for sample in samples[:3] if sample.original]
-    assert [sample.token for sample in originals] == ["left", "right", "none"]
-    assert not any(sample.original for sample in samples[3:9])
-    regions = samples[9:]
-    assert {sample.token for sample in regions} == {"none"}
-    assert "sea" in {sample.source for sample in regions}
-
-
-def test_without_none_among_the_classes_no_regions_are_drawn() -> None:
-    def tokens(hands: list[LabelledHand]) -> list[TrainingSample]:
-        return list(stream(hands, [], [], StreamSettings(copies=3), 0))
-
-    samples = tokens([thumb_left("left"), thumb_left("1")])
-    assert len(samples) == 8
-    # No copy is mirrored into a class that is not there.
-    assert {sample.token for sample in samples} == {"left", "1"}

@@ -11,7 +11,21 @@ from lightgesture.sources import read_picture
 
 def train(folder: Path, out: Path, *more: str) -> int:
     return main(
-        ["train", "svm", "--data", str(folder), "--out", str(out), "--copies", "1", "--centres", "50", *more]
+        [
+            "train",
+            "svm",
+            "--data",
+            str(folder),
+            "--out",
+            str(out),
+            "--copies",
+            "1",
+            "--centres",
+            "50",
+            "--steps",
+            "50",
+            *more,
+        ]
     )
 
 
@@ -50,12 +64,15 @@ def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> Non
         f'file,set,x,y,w,h,face_boxes\n{scene.relative_to(tmp_path)},room,20,20,20,20,"0,0,9,9;50,50,9,9"\n',
         encoding="utf-8",
     )
+    assert train(folder, tmp_path / "alone.npz", "--quiet") == 0
+    alone = json.loads((tmp_path / "alone.json").read_text(encoding="utf-8"))
     more = ("--backgrounds", str(folder / "none"), "--scenes", str(tmp_path / "scenes.csv"), "--quiet")
     assert train(folder, tmp_path / "mine.npz", *more) == 0
     card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
     assert card["data"]["backgrounds"] == {"pictures": 12, "sources": ["background none"]}
     assert card["data"]["scenes"] == {"pictures": 1, "sources": 1}
-    assert card["training"]["originals"] > 36
+    # Beside the rows of the same pictures without them.
+    assert card["training"]["rows"] > alone["training"]["rows"]
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from lightgesture.benchmarks.study_data import (
     training_of,
 )
 from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
-from lightgesture.benchmarks.study_rows import card_folds, mean_and_worst
+from lightgesture.benchmarks.study_rows import mean_and_worst
 from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
 from lightgesture.models import load_classifier
@@ -134,20 +134,12 @@ def test_pools_differ_in_what_their_name_says():
     assert (nothing.copies, nothing.patch) == (pool.copies, pool.patch)
 
 
-def test_folds_of_a_card(tmp_path):
-    names = [f"source {number}" for number in range(40)]
-    held = {name: {"accuracy": 0.5, "pictures": 4} for name in names}
-    card = tmp_path / "card.json"
-    card.write_text(json.dumps({"held_out_sources": {"per_source": held}}), encoding="utf-8")
-    rows = card_folds(card, 5)
-    assert sum(row["held_hands"] for row in rows) == 160
-    assert {row["held_accuracy"] for row in rows} == {0.5}
+def test_mean_and_worst_of_folds():
+    rows = [{"held_hands": 32, "held_accuracy": 0.5}] * 5
     mean, worst = mean_and_worst("svm", [*rows, {"held_hands": 10, "held_accuracy": 0.2}])
     assert (mean["row"], mean["held_hands"], worst["held_accuracy"]) == ("svm mean", 170, 0.2)
     assert mean["held_accuracy"] == pytest.approx((5 * 0.5 + 0.2) / 6)
-    card.write_text("{}", encoding="utf-8")
-    with pytest.raises(InputError, match="is no card with held-out sources"):
-        card_folds(card, 5)
+    assert mean_and_worst("svm", []) == []
 
 
 class Recorder:
@@ -180,13 +172,29 @@ def study_command(monkeypatch, drawn, tmp_path):
     return run
 
 
-def test_each_source_is_held_out_in_one_fold(study_command, tmp_path):
-    trained, rows = study_command("folds", "--svm-card", str(tmp_path / "none.json"))
+def test_each_source_is_held_out_in_one_fold(study_command):
+    trained, rows = study_command("folds")
     assert len(trained) == len({fold_of(f"s{n}", 5) for n in range(6)}) < 5
     assert sorted(source for _, _, held, _ in trained for source in held) == [f"s{n}" for n in range(6)]
     for _, seen, held, _ in trained:
         assert not seen & held
     assert [row["row"] for row in rows][-2:] == ["cnn mean", "cnn worst fold"]
+
+
+def test_the_svm_alone_answers_for_hands_that_it_never_saw(study_command):
+    trained, rows = study_command("subjects", "--svm-alone", "--svm-steps", "200")
+    assert not trained
+    (row,) = rows
+    assert (row["row"], row["held_hands"], row["sources"]) == ("svm", 12, 6)
+    assert row["val_accuracy"] == 1.0
+
+
+def test_the_svm_has_folds_of_its_own(study_command):
+    trained, rows = study_command("folds", "--svm", "--svm-steps", "20")
+    assert [row["row"] for row in rows if row["row"].startswith("svm fold")] == [
+        name.replace("cnn", "svm") for name, *_ in trained
+    ]
+    assert [row["row"] for row in rows][-2:] == ["svm mean", "svm worst fold"]
 
 
 def test_subjects_of_every_source_are_held_out(study_command):
@@ -262,7 +270,7 @@ def test_a_net_is_trained_and_scored(drawn, tmp_path, capsys):
     arguments = ["--data", str(drawn), "--pool", str(tmp_path / "pool"), "--copies", "2", "--rendered", "0"]
     more = ["--steps", "30", "--size", "small", "--out", str(tmp_path / "rows.json")]
     for _ in range(2):
-        assert reading_study.main(["subjects", *arguments, *more, "--svm", "--centres", "20"]) == 0
+        assert reading_study.main(["subjects", *arguments, *more, "--svm", "--svm-steps", "200"]) == 0
     cnn, svm = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["rows"]
     assert (cnn["held_hands"], cnn["val_hands"], cnn["sources"]) == (12, 8, 6)
     assert cnn["val_accuracy"] > 0.7
@@ -272,8 +280,9 @@ def test_a_net_is_trained_and_scored(drawn, tmp_path, capsys):
 
 def test_contours_become_a_model_file(drawn, tmp_path, capsys):
     out = tmp_path / "contours.npz"
-    arguments = ["--data", str(drawn), "--out", str(out), "--copies", "1", "--centres", "40"]
-    assert reading_baselines.main(["contours", *arguments, "--json", str(tmp_path / "rows.json")]) == 0
+    pool = ("--pool", str(tmp_path / "pool"), "--copies", "2", "--rendered", "0", "--steps", "200")
+    arguments = ["--data", str(drawn), "--out", str(out), "--centres", "40"]
+    assert reading_baselines.main(["contours", *arguments, *pool, "--json", str(tmp_path / "rows.json")]) == 0
     classifier = load_classifier(out)
     assert classifier.classes == TOKENS
     rows = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["rows"]

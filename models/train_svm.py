@@ -47,7 +47,7 @@ class SvmSettings:
     directions: int = 256
     dimensions: int = 64
     contour_weight: float = 0.15
-    centres: int = 1000
+    centres: int = 2000
     width: float = 2.0
     ridge: float = 1e-5
     descent: DescentSettings = field(default_factory=DescentSettings)
@@ -79,24 +79,28 @@ def train_svm(
     """Train on samples of at least two of `classes`; the answers are for samples of the sources that are kept out.
 
     The same samples, settings and seed give the same model on one machine with one number of threads.
-    Raises ModelError for a sample of an unknown class or of an unreadable box, and for less than two classes.
+    Raises ModelError for a sample of an unknown class or of an unreadable box, for less than two classes, and where so
+    few samples are given that none can be kept out.
     """
     settings = settings or SvmSettings()
     progress = progress or _silent
     data = describe(samples, settings.features, classes, progress)
     if len(np.unique(data.truth)) < 2:
         raise ModelError("the samples hold less than two classes; a classifier needs at least two")
-    kept = assign_folds(data.sources, settings.one_in) == settings.one_in - 1
+    kept = kept_out(data.truth, data.sources, settings.one_in)
     mean, projection = fit_projection(
         data.vectors, settings.features, settings.directions, settings.contour_weight
     )
-    learning = _rows_of(data, ~kept)
     reduced = np.concatenate(
-        [((part - mean) @ projection).astype(np.float16) for part in in_parts(learning.vectors)]
+        [((part - mean) @ projection).astype(np.float16) for part in in_parts(data.vectors)]
     )
-    weights = sample_weights(learning.truth, learning.sources) * learning.weights
-    machine = _start(reduced, learning.truth, weights, len(classes), settings, seed, progress)
-    machine = descend(machine, reduced, learning.truth, weights, settings.descent, seed, progress)
+    answered = _rows_of(data, kept)
+    learnt = _rows_of(replace(data, vectors=reduced), ~kept)
+    # The vectors of many samples take most of the memory, and are done with.
+    del data, reduced
+    weights = sample_weights(learnt.truth, learnt.sources) * learnt.weights
+    machine = _start(learnt, weights, len(classes), settings, seed, progress)
+    machine = descend(machine, learnt.vectors, learnt.truth, weights, settings.descent, seed, progress)
     model = SvmModel(
         classes=tuple(classes),
         features=settings.features,
@@ -110,7 +114,7 @@ def train_svm(
         temperature=1.0,
         smallest_hand=settings.smallest_hand,
     )
-    return _calibrated(model, _rows_of(data, kept))
+    return _calibrated(model, answered)
 
 
 def _silent(_step: str, _done: int, _total: int) -> None:
@@ -128,15 +132,15 @@ def _rows_of(data: Described, chosen: NDArray[np.bool_]) -> Described:
 
 
 def _start(
-    reduced: NDArray[np.float16],
-    truth: NDArray[np.int64],
+    learnt: Described,
     weights: Float,
     classes: int,
     settings: SvmSettings,
     seed: int,
     progress: Progress,
 ) -> Machine:
-    """The machine of fixed size in the first dimensions."""
+    """The machine of fixed size in the first dimensions. learnt: its vectors are reduced."""
+    reduced, truth = learnt.vectors, learnt.truth
     contour = block_lengths(settings.features)[1]
     gradients = reduced.shape[1] - contour
     first = np.arange(reduced.shape[1])
@@ -162,6 +166,19 @@ def _calibrated(model: SvmModel, kept: Described) -> tuple[SvmModel, HeldOut]:
     temperature = fit_temperature(scores[fitting], kept.truth[fitting])
     answers = HeldOut(softmax(scores, temperature), kept.truth, kept.sources, kept.original)
     return replace(model, temperature=temperature), answers
+
+
+def kept_out(truth: NDArray[np.int64], sources: NDArray[np.str_], one_in: int) -> NDArray[np.bool_]:
+    """Which samples are kept from the machine, bool (n,): one of so many folds of the sources, less those that alone
+    show a class. Where these are all, one sample in so many. Raises ModelError where nothing is left to keep."""
+    for folds in (assign_folds(sources, one_in), np.arange(len(truth)) % one_in):
+        kept = folds == one_in - 1
+        kept &= np.isin(truth, truth[~kept])
+        if kept.any():
+            return np.asarray(kept)
+    raise ModelError(
+        f"{len(truth)} samples are too few: one in {one_in} is kept from the machine; give more of each class"
+    )
 
 
 def assign_folds(sources: NDArray[np.str_], folds: int) -> NDArray[np.int64]:

@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--centres",
         type=count,
         metavar="N",
-        help="vectors of the machine (default: 1000); size grows with them",
+        help="vectors of the machine (default: 2000); size grows with them",
     )
     parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 40000)")
     parser.add_argument(

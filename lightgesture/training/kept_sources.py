@@ -22,19 +22,23 @@ def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
     """Which hands are kept from the net, bool (n,): whole sources that hold one hand in so many together.
 
     Sources come in an order that their names give, so that a further one changes little; a source that is too large
-    is passed over. Where sources are so few or so large that less than half of that is found, one hand in so many is
-    kept, whoever's it is.
+    or alone shows what is left of a class is passed over. Where sources are so few or so large that less than half of
+    that is found, one hand in so many is kept, whoever's it is.
     """
     names, members, sizes = np.unique(
         [hand.source for hand in hands], return_inverse=True, return_counts=True
     )
+    members = members.reshape(-1)
+    tokens = np.array([hand.token for hand in hands])
     room = len(hands) / one_in
     kept = np.zeros(len(names), bool)
     for place in sorted(range(len(names)), key=lambda place: fold_of(str(names[place]), ORDERS)):
-        kept[place] = sizes[kept].sum() + sizes[place] <= room
+        learnt = tokens[~kept[members] & (members != place)]
+        fits = sizes[kept].sum() + sizes[place] <= room
+        kept[place] = fits and np.isin(tokens[members == place], learnt).all()
     if sizes[kept].sum() < 0.5 * room:
         return np.asarray(np.arange(len(hands)) % one_in == 0)
-    return np.asarray(kept[members.reshape(-1)])
+    return np.asarray(kept[members])
 
 
 def keeps_whole_sources(hands: Sequence[LabelledHand], kept: NDArray[np.bool_]) -> bool:

@@ -8,7 +8,7 @@ from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError, TrainingSample
 from lightgesture.models.calibration import fit_temperature
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.models.train_svm import SvmSettings, assign_folds, sample_weights, train_svm
+from lightgesture.models.train_svm import SvmSettings, assign_folds, kept_out, sample_weights, train_svm
 
 NAMES = ("1", "5", "none")
 
@@ -47,6 +47,19 @@ def test_what_is_kept_out_changes_nothing_but_the_temperature(
     assert np.array_equal(model.centres, other_model.centres)
     assert np.array_equal(other.probabilities.argmax(axis=1), plain.probabilities.argmax(axis=1))
     assert (other.truth != plain.truth).any()
+
+
+def test_what_alone_shows_a_class_is_not_kept(samples: list[TrainingSample], quick: SvmSettings) -> None:
+    truth = np.repeat([0, 1, 0], 30)
+    sources = np.repeat(["a", "b", "c"], 30)
+    for one_in in (2, 3):
+        kept = kept_out(truth, sources, one_in)
+        assert kept.any()
+        assert set(truth[~kept]) == {0, 1}
+    with pytest.raises(ModelError, match="7 samples are too few: one in 12"):
+        kept_out(truth[28:35], sources[28:35], 12)
+    with pytest.raises(ModelError, match="too few"):
+        train_svm([samples[0], samples[40]], quick, classes=NAMES)
 
 
 def test_a_sample_of_no_weight_teaches_nothing(samples: list[TrainingSample], quick: SvmSettings) -> None:

@@ -1,5 +1,7 @@
 """What is kept from a net: whole sources where that can be, and about as much as was asked for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -43,3 +45,16 @@ def test_of_few_sources_some_hands_each_are_kept(sizes):
     kept = kept_out(hands, 12)
     assert kept.sum() == len(hands) // 12
     assert not keeps_whole_sources(hands, kept)
+
+
+def test_who_alone_shows_a_class_is_never_kept():
+    """Wherever in the order of names the only one who shows a sign comes."""
+    for number in range(40):
+        sizes = {f"person {place}": 5 for place in range(40)}
+        hands = [
+            replace(hand, token="ok") if hand.source == f"person {number}" else hand
+            for hand in hands_of(sizes)
+        ]
+        kept = kept_out(hands, 10)
+        assert kept.any()
+        assert "ok" in {hand.token for hand, is_kept in zip(hands, kept, strict=True) if not is_kept}

@@ -50,11 +50,7 @@ def cut_patch(
     the diver's own.
     Raises ValueError for a box without area or wholly outside the picture, and for an unknown side.
     """
-    settings = settings or PatchSettings()
-    if side not in ("left", "right"):
-        raise ValueError(f'side is {side!r}; it must be "left" or "right"')
-    patch = _resized(_cut_square(as_bgr(image), box, settings.context), settings.size)
-    return np.asarray(cv2.flip(patch, 1), np.uint8) if side == "right" else patch
+    return np.asarray(cut_patches(image, [box], [side], settings)[0], np.uint8)
 
 
 def cut_patches(
@@ -67,24 +63,30 @@ def cut_patches(
     settings = settings or PatchSettings()
     if len(boxes) != len(sides):
         raise ValueError(f"{len(boxes)} boxes but {len(sides)} sides; give one side for each box")
+    picture = as_bgr(image)
     patches = np.empty((len(boxes), settings.size, settings.size, 3), np.uint8)
-    for index, (box, side) in enumerate(zip(boxes, sides, strict=True)):
-        patches[index] = cut_patch(image, box, side, settings)
+    for patch, box, side in zip(patches, boxes, sides, strict=True):
+        if side not in ("left", "right"):
+            raise ValueError(f'side is {side!r}; it must be "left" or "right"')
+        _resize(_cut_square(picture, box, settings.context), patch)
+        if side == "right":
+            cv2.flip(patch, 1, patch)
     return patches
 
 
-def _resized(square: Image, size: int) -> Image:
-    """The square picture at `size` × `size` pixels.
+def _resize(square: Image, patch: Image) -> None:
+    """Write the square picture into the patch, at its size.
 
     Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
     is sampled at twice the size first: averaging all its pixels takes three to four times as long and reads no better.
     """
+    size = len(patch)
     if square.shape[0] > 2 * size:
         square = np.asarray(
             cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR), np.uint8
         )
     method = cv2.INTER_AREA if square.shape[0] >= size else cv2.INTER_LINEAR
-    return np.asarray(cv2.resize(square, (size, size), interpolation=method), np.uint8)
+    cv2.resize(square, (size, size), patch, interpolation=method)
 
 
 def _cut_square(image: Image, box: Box, context: float) -> Image:

@@ -65,7 +65,7 @@ def test_any_box_gives_a_patch_or_one_clear_refusal(x: int, y: int, width: int, 
 
 @pytest.mark.parametrize("box", [(0, 0, 1, 1), (79, 59, 1, 1), (5, 5, 8, 8), (0, 0, 80, 60), (40, 0, 1, 60)])
 def test_tiny_and_whole_boxes_give_patches(box: tuple[int, int, int, int]) -> None:
-    assert cut_patch(gradient_picture(), box, "left").shape == (48, 48, 3)
+    assert cut_patch(gradient_picture(), box, "left").shape == (32, 32, 3)
 
 
 def test_grey_pictures_are_read_as_equal_channels() -> None:

@@ -7,7 +7,7 @@ from lightgesture.features.vector import VectorSettings, block_lengths, feature_
 
 def test_the_vector_is_gradients_then_contour() -> None:
     settings = VectorSettings()
-    patches = np.random.default_rng(0).integers(0, 256, (3, 48, 48, 3)).astype(np.uint8)
+    patches = np.random.default_rng(0).integers(0, 256, (3, 32, 32, 3)).astype(np.uint8)
     vectors = feature_vectors(patches, settings)
     gradients, contour = block_lengths(settings)
     assert vectors.shape == (3, gradients + contour)

@@ -147,10 +147,11 @@ def count_products(classifier: Classifier) -> int | None:
 def kernel_products(model: SvmModel) -> int:
     """Multiply-adds of the SVM's matrix products for one patch.
 
-    The votes of each direction of the gradients, (size, size), are pooled to cells along both sides; the vector is
-    projected; distances to the centres and the scores of the classes follow.
+    The votes of each direction of the gradients within the rim, (size, size), are pooled to cells along both sides; the
+    vector is projected; distances to the centres and the scores of the classes follow.
     """
-    size, hog = model.features.patch.size, model.features.hog
+    hog = model.features.hog
+    size = model.features.patch.size - 2 * hog.rim
     cells = size // hog.cell
     pooling = hog.bins * (cells * size * size + cells * cells * size)
     length, width = sum(block_lengths(model.features)), model.projection.shape[1]

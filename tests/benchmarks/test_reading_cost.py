@@ -28,8 +28,8 @@ PAIR = Pair(np.full((60, 80, 3), 90, np.uint8), ((5, 5, 20, 30), (40, 5, 20, 30)
 
 @pytest.fixture
 def machine():
-    """Two classes, seven centres in three dimensions, patches of 24 pixels in cells of 12 with 4 directions."""
-    features = VectorSettings(PatchSettings(24), HogSettings(cell=12, bins=4))
+    """Two classes, seven centres in three dimensions; 24 of a patch's 28 pixels in cells of 12 with 4 directions."""
+    features = VectorSettings(PatchSettings(28), HogSettings(rim=2, cell=12, bins=4))
     length = sum(block_lengths(features))
     return SvmModel(
         classes=("5", "none"),

@@ -83,6 +83,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         parsers[kind].add_argument(
             "--svm-steps", type=positive, default=10000, metavar="N", help="of the SVM (default 10000)"
         )
+        parsers[kind].add_argument(
+            "--svm-centres", type=positive, default=1000, metavar="N", help="of the SVM (default 1000)"
+        )
     parsers["augmentation"].add_argument(
         "--only", choices=list(POOLS), action="append", help="this row alone (repeatable)"
     )

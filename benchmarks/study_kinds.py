@@ -57,7 +57,7 @@ def folds(study: Study, training: CnnTraining, folder: Path, args: argparse.Name
             if not args.svm_alone:
                 rows.append(fit_row(study, f"cnn fold {fold}", chosen, held, training, folder))
             if args.svm or args.svm_alone:
-                svm.append(_svm_row(study, f"svm fold {fold}", chosen, held, training, args.svm_steps))
+                svm.append(_svm_row(study, f"svm fold {fold}", chosen, held, training, args))
     rows += [*mean_and_worst("cnn", rows), *svm, *mean_and_worst("svm", svm)]
     return [Table("folds", f"{FOLDS} folds over the sources of hands/train", COLUMNS, tuple(rows), NOTE)]
 
@@ -72,13 +72,13 @@ def subjects(study: Study, training: CnnTraining, folder: Path, args: argparse.N
     if not args.svm_alone:
         rows.append(fit_row(study, "cnn", chosen, held, training, folder))
     if args.svm or args.svm_alone:
-        rows.append(_svm_row(study, "svm", chosen, held, training, args.svm_steps))
+        rows.append(_svm_row(study, "svm", chosen, held, training, args))
     title = "Held-out subjects of sources that are trained on"
     return [Table("subjects", title, COLUMNS, tuple(rows), NOTE)]
 
 
 def _svm_row(
-    study: Study, name: str, chosen: Mask, held: Mask, training: CnnTraining, steps: int
+    study: Study, name: str, chosen: Mask, held: Mask, training: CnnTraining, args: argparse.Namespace
 ) -> dict[str, Cell]:
     """The SVM on the same rows of the pool, and on the hands that they are copies of."""
     from lightgesture.models.descent import DescentSettings
@@ -90,7 +90,7 @@ def _svm_row(
     samples = pool_samples(
         study.pool, Originals(study.hands), chosen, ~held, training.pool, PoolSampling(), training.seed
     )
-    settings = SvmSettings(descent=DescentSettings(steps=steps))
+    settings = SvmSettings(centres=args.svm_centres, descent=DescentSettings(steps=args.svm_steps))
     model, _ = train_svm(samples, settings, classes=study.classes, seed=training.seed)
     classifier = SvmClassifier(model)
     return {

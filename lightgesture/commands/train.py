@@ -8,7 +8,10 @@ from typing import Protocol, cast
 from lightgesture.errors import UsageError
 
 TARGETS = {
-    "svm": ("lightgesture.commands.train_svm", "the classifier of hand patches without a net; needs no torch"),
+    "svm": (
+        "lightgesture.commands.train_svm",
+        "the classifier of hand patches without a net; needs no torch",
+    ),
     "cnn": ("lightgesture.commands.train_cnn", "the small net that reads hand patches"),
     "regions": (
         "lightgesture.commands.train_regions",

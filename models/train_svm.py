@@ -78,6 +78,7 @@ def train_svm(
 ) -> tuple[SvmModel, HeldOut]:
     """Train on samples of at least two of `classes`; the answers are for samples of the sources that are kept out.
 
+    Only the principal directions, which know no classes, are those of all samples.
     The same samples, settings and seed give the same model on one machine with one number of threads.
     Raises ModelError for a sample of an unknown class or of an unreadable box, for less than two classes, and where so
     few samples are given that none can be kept out.

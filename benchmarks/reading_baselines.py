@@ -39,6 +39,7 @@ from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.svm_file import write_svm_model
 from lightgesture.models.train_svm import SvmSettings, train_svm
 from lightgesture.training.patch_kinds import Originals
+from lightgesture.training.time_left import tenths
 
 CONTOURS, PAPER = "contours", "paper"
 
@@ -70,7 +71,7 @@ def run_contours(args: argparse.Namespace) -> None:
         args.seed,
     )
     settings = contour_settings(args.centres, args.steps)
-    model, _ = train_svm(samples, settings, classes=study.classes, seed=args.seed, progress=_told)
+    model, _ = train_svm(samples, settings, classes=study.classes, seed=args.seed, progress=tenths(say))
     write_svm_model(model, Path(args.out))
     say(f"wrote {args.out}")
     tables = val_tables(SvmClassifier(model), CONTOURS, data)
@@ -109,13 +110,6 @@ def val_tables(classifier: Classifier, name: str, data: Path) -> list[Table]:
         by_source_table(answers, name),
         confusion_table(answers, name),
     ]
-
-
-def _told(step: str, done: int, total: int) -> None:
-    """Every tenth of a step as a line; of a step of unknown length, every ten thousandth sample."""
-    every = max(total // 10, 1) if total else 10_048
-    if done == total or done % every == 0:
-        say(f"{step}: {done}{f' of {total}' if total else ''}")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

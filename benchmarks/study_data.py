@@ -18,6 +18,7 @@ from lightgesture.training.originals import read_originals
 from lightgesture.training.patch_kinds import Originals, PoolSettings
 from lightgesture.training.patch_pool import PatchPool, make_pool
 from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+from lightgesture.training.time_left import tenths
 
 LEFT_OUT = ("emre_drone",)
 """Sources of `hands/train` that no training sees: people of the frames that are reported."""
@@ -77,14 +78,10 @@ def draw_pool(
     originals: Originals, settings: PoolSettings, training: CnnTraining, folder: Path, progress: Progress
 ) -> PatchPool:
     """The pool in a folder, drawn where there is none. InputError: it was drawn of other hands."""
-
-    def show(step: str, done: int, total: int) -> None:
-        if done * 10 // total > (done - 1) * 10 // total:
-            progress(f"{folder.name}: {step}: {done} of {total}")
-
     folder.mkdir(parents=True, exist_ok=True)
     try:
-        pool = make_pool(originals, settings, training.seed, training.jobs, folder, show)
+        told = tenths(lambda line: progress(f"{folder.name}: {line}"))
+        pool = make_pool(originals, settings, training.seed, training.jobs, folder, told)
     except (OSError, ValueError, KeyError) as error:
         raise InputError(
             f"{folder}: holds no pool that can be read ({error!r}); give another --pool"

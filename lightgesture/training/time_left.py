@@ -28,10 +28,12 @@ class TimeLeft:
 
 
 def tenths(progress: Callable[[str], None]) -> Callable[[str, int, int], None]:
-    """Tells every tenth of a step as a line, with the time left."""
+    """Tells every tenth of a step as a line, with the time left; of a step of unknown length (0), nothing."""
     clocks: dict[str, TimeLeft] = {}
 
     def show(step: str, done: int, total: int) -> None:
+        if not total:
+            return
         left = clocks.setdefault(step, TimeLeft(total, done))
         if done * 10 // total > (done - 1) * 10 // total:
             progress(f"{step}: {done} of {total}, {left.told(done)}")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.training.time_left import TimeLeft
+from lightgesture.training.time_left import TimeLeft, tenths
 
 
 @pytest.mark.parametrize(
@@ -20,3 +20,14 @@ def test_what_was_there_before_tells_nothing_of_the_pace(passed, done, words):
     left = TimeLeft(100, 40, lambda: now[0])
     now[0] += passed
     assert left.told(done) == words
+
+
+def test_every_tenth_of_each_step_is_a_line():
+    lines = []
+    show = tenths(lines.append)
+    for done in range(1, 41):
+        show("draw", done, 40)
+        show("count", done, 0)
+    assert len(lines) == 10
+    assert lines[0].startswith("draw: 4 of 40, ")
+    assert lines[-1] == "draw: 40 of 40, done"

@@ -67,7 +67,7 @@ def hinge_gradients(machine: Machine, samples: Float, targets: Float) -> tuple[f
     kernel = radial_kernel(points, machine.centres, 1.0)
     short = np.maximum(np.float32(0.0), 1.0 - targets * (kernel @ machine.weights + machine.bias))
     loss = float(np.square(short).sum(axis=1).mean())
-    by_scores = targets * short * np.float32(-2.0 / len(samples))
+    by_scores = np.asarray(targets * short * np.float32(-2.0 / len(samples)), np.float32)
     # By the squared distances, of which the kernel is exp(-d).
     by_squares = by_scores @ machine.weights.T
     by_squares *= kernel

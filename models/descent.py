@@ -1,9 +1,9 @@
 """All parts of a radial machine learnt together: projection, expansion vectors and weights, by descent of one loss.
 
 Wu, Schölkopf and Bakir, "A Direct Method for Building Sparse Kernel Learning Algorithms", Journal of Machine Learning
-Research 7, 2006: a machine whose few expansion vectors are learnt needs a tenth of those of one that takes them from
-the data. The loss is the squared hinge of each class against all others, as of support vector machines; what is drawn
-for a step weighs by its frequency. The steps are Adam's (Kingma and Ba, ICLR 2015).
+Research 7, 2006: a machine whose expansion vectors are learnt needs far fewer than one that takes them from the data.
+The loss is the squared hinge of each class against all others, as of support vector machines; what is drawn for a step
+weighs by its frequency. The steps are Adam's (Kingma and Ba, ICLR 2015).
 """
 
 from dataclasses import dataclass

@@ -19,7 +19,7 @@ class TrainingSample:
     image: uint8 (height, width, 3), BGR. box: outline, pixels of `image`. side: the diver's own, "left" or "right".
     token: class name. source: the person, room and camera; a held-out fold holds whole sources.
     original: False for an altered copy; only originals count in scores. weight: how much it counts in training
-    beside others of its class and source, above 0.
+    beside others of its class and source, 0 or more.
     """
 
     image: Image

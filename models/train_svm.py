@@ -88,7 +88,7 @@ def train_svm(
     data = describe(samples, settings.features, classes, progress)
     if len(np.unique(data.truth)) < 2:
         raise ModelError("the samples hold less than two classes; a classifier needs at least two")
-    kept = kept_out(data.truth, data.sources, settings.one_in)
+    kept = kept_samples(data.truth, data.sources, settings.one_in)
     mean, projection = fit_projection(
         data.vectors, settings.features, settings.directions, settings.contour_weight
     )
@@ -169,7 +169,7 @@ def _calibrated(model: SvmModel, kept: Described) -> tuple[SvmModel, HeldOut]:
     return replace(model, temperature=temperature), answers
 
 
-def kept_out(truth: NDArray[np.int64], sources: NDArray[np.str_], one_in: int) -> NDArray[np.bool_]:
+def kept_samples(truth: NDArray[np.int64], sources: NDArray[np.str_], one_in: int) -> NDArray[np.bool_]:
     """Which samples are kept from the machine, bool (n,): one of so many folds of the sources, less those that alone
     show a class. Where these are all, one sample in so many. Raises ModelError where nothing is left to keep."""
     for folds in (assign_folds(sources, one_in), np.arange(len(truth)) % one_in):

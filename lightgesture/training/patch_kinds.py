@@ -36,7 +36,7 @@ class PoolSettings:
     mild_share: float = 1 / 3
     rounds: int = 8
     hidden: float = 0.5
-    patch: PatchSettings = field(default_factory=lambda: PatchSettings(size=32, context=1.1))
+    patch: PatchSettings = field(default_factory=PatchSettings)
     margin: int = 2
     contour: ContourSettings = field(default_factory=ContourSettings)
     rendered: int = 12000

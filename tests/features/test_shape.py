@@ -62,6 +62,12 @@ def test_what_is_hardly_an_outline_gives_finite_numbers(contour):
     assert np.isfinite(resample(contour, 16)).all()
 
 
+def test_depths_alone_are_those_of_the_defects():
+    for contour in (SQUARE, ARROW, _fingers(4)):
+        assert np.array_equal(shape.defect_depths(contour), shape.convexity_defects(contour).depth)
+    assert shape.defect_depths(_fingers(4)).max() > 100.0
+
+
 def _fingers(count):
     """Outline of a wide palm with pointed fingers upwards."""
     points = [[0, 300]]

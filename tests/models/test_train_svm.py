@@ -8,7 +8,7 @@ from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError, TrainingSample
 from lightgesture.models.calibration import fit_temperature
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.models.train_svm import SvmSettings, assign_folds, kept_out, sample_weights, train_svm
+from lightgesture.models.train_svm import SvmSettings, assign_folds, kept_samples, sample_weights, train_svm
 
 NAMES = ("1", "5", "none")
 
@@ -53,11 +53,11 @@ def test_what_alone_shows_a_class_is_not_kept(samples: list[TrainingSample], qui
     truth = np.repeat([0, 1, 0], 30)
     sources = np.repeat(["a", "b", "c"], 30)
     for one_in in (2, 3):
-        kept = kept_out(truth, sources, one_in)
+        kept = kept_samples(truth, sources, one_in)
         assert kept.any()
         assert set(truth[~kept]) == {0, 1}
     with pytest.raises(ModelError, match="7 samples are too few: one in 12"):
-        kept_out(truth[28:35], sources[28:35], 12)
+        kept_samples(truth[28:35], sources[28:35], 12)
     with pytest.raises(ModelError, match="too few"):
         train_svm([samples[0], samples[40]], quick, classes=NAMES)
 

@@ -34,7 +34,9 @@ def run(args: argparse.Namespace) -> None:
     """One study from the pool to its table."""
     from lightgesture.training.checkpoints import need_torch
 
-    need_torch()
+    svm_alone, svm = (getattr(args, name, False) for name in ("svm_alone", "svm"))
+    if not svm_alone:
+        need_torch()
     training = replace(
         training_from(args),
         size=args.size,
@@ -47,7 +49,10 @@ def run(args: argparse.Namespace) -> None:
     folder = Path(args.pool) / "studies"
     folder.mkdir(parents=True, exist_ok=True)
     tables = KINDS[args.kind](study, training, folder, args)
-    print_and_write(tables, args.out, asdict(training))
+    settings = asdict(training)
+    if svm or svm_alone:
+        settings["svm"] = {"centres": args.svm_centres, "steps": args.svm_steps}
+    print_and_write(tables, args.out, settings)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -18,7 +18,7 @@ from lightgesture.benchmarks.study_data import (
 from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
 from lightgesture.benchmarks.study_rows import mean_and_worst
 from lightgesture.datasets import fold_of
-from lightgesture.errors import InputError
+from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.training import checkpoints
 from lightgesture.training.patch_kinds import PoolSettings
@@ -187,6 +187,16 @@ def test_the_svm_alone_answers_for_hands_that_it_never_saw(study_command):
     (row,) = rows
     assert (row["row"], row["held_hands"], row["sources"]) == ("svm", 12, 6)
     assert row["val_accuracy"] == 1.0
+
+
+def test_the_svm_alone_needs_no_torch_and_its_settings_are_told(study_command, monkeypatch, tmp_path):
+    def refuse():
+        raise UsageError("no torch here")
+
+    monkeypatch.setattr(checkpoints, "need_torch", refuse)
+    study_command("subjects", "--svm-alone", "--svm-steps", "20", "--svm-centres", "30")
+    told = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["settings"]
+    assert told["svm"] == {"centres": 30, "steps": 20}
 
 
 def test_the_svm_has_folds_of_its_own(study_command):

@@ -1,6 +1,7 @@
 """`lightgesture train svm`: the support vector machine that reads hand patches."""
 
 import argparse
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -85,10 +86,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 class StepBars:
-    """A progress bar for one step after the other, on stderr where that is a terminal."""
+    """A progress bar for one step after the other on stderr; where that is no terminal, a line for every tenth."""
 
     def __init__(self, quiet: bool) -> None:
+        from lightgesture.training.time_left import tenths
+
         self._quiet = quiet
+        self._lines = None if sys.stderr.isatty() else tenths(say)
         self._step = ""
         self._bar: Any = None
 
@@ -102,11 +106,14 @@ class StepBars:
         """`done` of `total` of a step are done; a total of 0 is not known."""
         if self._quiet:
             return
+        if self._lines is not None:
+            self._lines(step, done, total)
+            return
         if step != self._step:
             from tqdm import tqdm
 
             self._close()
-            self._bar = tqdm(desc=step, total=total or None, leave=False, disable=None)
+            self._bar = tqdm(desc=step, total=total or None, leave=False)
             self._step = step
         self._bar.update(done - self._bar.n)
 

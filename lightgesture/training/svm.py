@@ -32,7 +32,7 @@ class SvmTraining:
     data: manifest, or folder with a folder a class, or None to train on rendered hands alone. backgrounds: folders of
     pictures without hands. scenes: table of whole pictures with boxes of hands and faces, or None. without: sources of
     `data` that are left out. seed: of everything drawn. jobs: processes that draw patches. pool: what is drawn.
-    sampling: what it weighs. svm: of the machine.
+    sampling: what it weighs. svm: of the machine; raises ValueError if it reads another patch than is drawn.
     """
 
     data: Path | None
@@ -44,6 +44,12 @@ class SvmTraining:
     pool: PoolSettings = field(default_factory=PoolSettings)
     sampling: PoolSampling = field(default_factory=PoolSampling)
     svm: SvmSettings = field(default_factory=SvmSettings)
+
+    def __post_init__(self) -> None:
+        if self.svm.features.patch != self.pool.patch:
+            raise ValueError(
+                f"the machine reads {self.svm.features.patch}, the pool holds {self.pool.patch}; give both the same"
+            )
 
 
 def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> dict[str, Any]:

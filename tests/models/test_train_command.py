@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
+from lightgesture.features.patch import PatchSettings
 from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
+from lightgesture.training.patch_kinds import PoolSettings
+from lightgesture.training.svm import SvmTraining
 
 
 def train(folder: Path, out: Path, *more: str) -> int:
@@ -48,6 +51,22 @@ def test_folders_become_a_model_and_its_card(
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "wrote" in captured.err
+
+
+def test_steps_are_told_as_lines_where_there_is_no_terminal(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train(folder, tmp_path / "mine.npz") == 0
+    told = capsys.readouterr().err.splitlines()
+    assert "lightgesture: learn the machine: 50 of 50, done" in told
+    assert len([line for line in told if "learn the machine" in line]) == 10
+    assert train(folder, tmp_path / "quiet.npz", "--quiet") == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_the_machine_and_the_pool_have_one_patch(folder: Path) -> None:
+    with pytest.raises(ValueError, match="give both the same"):
+        SvmTraining(folder, pool=PoolSettings(patch=PatchSettings(24, 1.1)))
 
 
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:

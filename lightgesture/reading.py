@@ -21,14 +21,15 @@ class ReadingSettings:
     edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
         classifier is not sure.
     covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
-    doubtful_factor: factor on the confidence of a hand that is cut by the edge or crowded, 0.7 to 1: what is read there
-        must be clearer.
+    edge_factor, crowded_factor: factors on the confidence of a hand that is cut by the edge, and of one that is
+        crowded, 0.7 to 1; the smaller where it is both. What is read there must be clearer.
     """
 
     token_probability: float = 0.7
     edge_share: float = 0.02
     covered_share: float = 0.25
-    doubtful_factor: float = 0.9
+    edge_factor: float = 0.8
+    crowded_factor: float = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +88,10 @@ def read_token(
     """
     best = int(np.argmax(probabilities))
     confidence = float(probabilities[best])
-    if at_edge or crowded:
-        confidence *= settings.doubtful_factor
+    confidence *= min(
+        settings.edge_factor if at_edge else 1.0,
+        settings.crowded_factor if crowded else 1.0,
+    )
     if classes[best] == NONE:
         return None, confidence, "unknown_shape"
     if confidence < settings.token_probability:

@@ -135,6 +135,8 @@ def test_the_clearest_extent_is_read():
         ([0.4, 0.3, 0.3], True, True, None, "partial"),
         ([0.4, 0.3, 0.3], False, True, None, "occluded"),
         ([0.75, 0.15, 0.1], False, True, None, "occluded"),
+        ([0.85, 0.1, 0.05], False, True, "0", None),
+        ([0.85, 0.1, 0.05], True, False, None, "partial"),
         ([0.1, 0.2, 0.7], False, False, None, "unknown_shape"),
         ([0.1, 0.2, 0.7], True, True, None, "unknown_shape"),
     ],
@@ -143,7 +145,7 @@ def test_a_token_is_refused_with_its_reason(row, at_edge, crowded, token, reason
     settings = ReadingSettings()
     found = read_token(np.array(row, np.float32), CLASSES, at_edge, crowded, settings)
     assert (found[0], found[2]) == (token, reason)
-    factor = settings.doubtful_factor if at_edge or crowded else 1.0
+    factor = settings.edge_factor if at_edge else settings.crowded_factor if crowded else 1.0
     assert found[1] == pytest.approx(max(row) * factor)
 
 

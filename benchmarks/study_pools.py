@@ -39,11 +39,6 @@ def without_mild(pool: PoolSettings) -> PoolSettings:
     return replace(pool, mild_share=0.0)
 
 
-def without_things(pool: PoolSettings) -> PoolSettings:
-    """The same pool without what is drawn into places."""
-    return replace(pool, things=replace(pool.things, count=0))
-
-
 def with_nothing(pool: PoolSettings) -> PoolSettings:
     """Copies as the pictures are, and no rendered hands."""
     for copy, light in WITHOUT.values():
@@ -60,7 +55,6 @@ POOLS: Mapping[str, Change] = {
     **{name: _leaving_out(name) for name in WITHOUT},
     "no mild copies": without_mild,
     "no rendered hands": without_rendered,
-    "no things drawn into places": without_things,
     NOTHING: with_nothing,
 }
 """What becomes of a pool's settings, by the name of the row."""

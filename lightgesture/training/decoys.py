@@ -16,25 +16,21 @@ def put_decoys(canvas: Float, unit: float, most: int, draw_texture: Callable[[],
     canvas: float32 (h, w, 3), 0 to 1, drawn on. unit: height of a hand in pixels. most: objects in a picture; every
     second has none. draw_texture: another picture of the canvas's shape.
     """
+    height, width = canvas.shape[:2]
     count = rng.integers(1, most + 1) if rng.random() < 0.5 else 0
     for _ in range(count):
-        put_decoy(canvas, unit, draw_texture(), rng)
-
-
-def put_decoy(canvas: Float, unit: float, texture: Float, rng: Random) -> None:
-    """One of the objects of `put_decoys`, a piece of `texture`, which has the canvas's shape."""
-    height, width = canvas.shape[:2]
-    radius = unit * rng.uniform(0.2, 0.8)
-    centre = rng.uniform(0, width), rng.uniform(0, height)
-    angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 12)))
-    reach = radius * rng.uniform(0.5, 1.3, len(angles))
-    outline = np.stack([centre[0] + reach * np.cos(angles), centre[1] + reach * np.sin(angles)], axis=1)
-    mask = np.zeros((height, width), np.float32)
-    cv2.fillPoly(mask, [np.rint(outline).astype(np.int32)], 1.0, cv2.LINE_AA)
-    colour = np.array([rng.uniform(0.0, 0.5), rng.uniform(0.1, 0.6), rng.uniform(0.4, 1.0)], np.float32)
-    tint = rng.uniform(0.0, 0.9)
-    thing = texture * (1.0 - tint) + (0.3 + 0.7 * texture) * colour * tint
-    canvas += mask[..., None] * (thing - canvas)
+        texture = draw_texture()
+        radius = unit * rng.uniform(0.2, 0.8)
+        centre = rng.uniform(0, width), rng.uniform(0, height)
+        angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 12)))
+        reach = radius * rng.uniform(0.5, 1.3, len(angles))
+        outline = np.stack([centre[0] + reach * np.cos(angles), centre[1] + reach * np.sin(angles)], axis=1)
+        mask = np.zeros((height, width), np.float32)
+        cv2.fillPoly(mask, [np.rint(outline).astype(np.int32)], 1.0, cv2.LINE_AA)
+        colour = np.array([rng.uniform(0.0, 0.5), rng.uniform(0.1, 0.6), rng.uniform(0.4, 1.0)], np.float32)
+        tint = rng.uniform(0.0, 0.9)
+        thing = texture * (1.0 - tint) + (0.3 + 0.7 * texture) * colour * tint
+        canvas += mask[..., None] * (thing - canvas)
 
 
 def put_structures(canvas: Float, unit: float, rng: Random) -> None:

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.standardise import StandardSettings
-from lightgesture.models import NONE
 from lightgesture.models.train_svm import sample_weights
 from lightgesture.training.patch_pool import PatchPool
 
@@ -20,13 +19,11 @@ _ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))
 
 @dataclass(frozen=True, slots=True)
 class HandSampling:
-    """Which patches are seen, and what becomes of one each time. erased: share of patches of which a part is covered,
-    0 to 1. largest: side of that part over the patch's, 0 to 1. beside: factor on the weight of what is `none` and no
-    person's sign (regions, things, hidden hands), above 0; more refuses more of it and reads a little less."""
+    """What becomes of a patch each time it is seen. erased: share of patches of which a part is covered, 0 to 1.
+    largest: side of that part over the patch's, 0 to 1."""
 
     erased: float = 0.2
     largest: float = 0.4
-    beside: float = 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,10 +66,10 @@ class HandSamples:
         index = {name: number for number, name in enumerate(classes)}
         self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
         # Beside the shapes that people show as no token, parts of hands and of rooms are a kind of their own.
-        beside = pool.hands[self._rows] < 0
-        kinds = np.char.add(pool.sources[self._rows], np.where(beside, " beside", ""))
-        weights = sample_weights(self._truth, kinds).astype(np.float64)
-        weights[beside & (pool.tokens[self._rows] == NONE)] *= self._settings.beside
+        beside = np.where(pool.hands[self._rows] >= 0, "", " beside")
+        weights = sample_weights(self._truth, np.char.add(pool.sources[self._rows], beside)).astype(
+            np.float64
+        )
         self._cumulative = np.cumsum(weights) / weights.sum()
 
     def __len__(self) -> int:

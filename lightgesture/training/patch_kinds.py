@@ -1,4 +1,4 @@
-"""What a pool of patches is made of: copies of hands, hidden hands, regions and things without any, rendered hands."""
+"""What a pool of patches is made of: copies of hands, hidden hands, regions that are no hand, rendered hands."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,11 +11,9 @@ from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Image
 from lightgesture.models import NONE, TrainingSample
 from lightgesture.training.augment import MILD, MIRRORED_TOKENS, AugmentSettings, augment
-from lightgesture.training.drawn_things import ThingSettings, drawn_things
 from lightgesture.training.hidden_hands import HidingSettings, hide
 from lightgesture.training.light import relight
 from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
-from lightgesture.training.painted_over import without_hands
 from lightgesture.training.samples import LabelledHand
 from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
 
@@ -31,8 +29,7 @@ class PoolSettings:
     rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
     patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
     contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered hands, and how
-    they vary. augment, mild, negative, hiding, things: how copies, mild copies, regions, hidden hands and what is drawn
-    into places are made.
+    they vary. augment, mild, negative, hiding: how copies, mild copies, regions and hidden hands are made.
     """
 
     copies: int = 24
@@ -52,7 +49,6 @@ class PoolSettings:
     mild: AugmentSettings = MILD
     negative: NegativeSettings = field(default_factory=NegativeSettings)
     hiding: HidingSettings = field(default_factory=HidingSettings)
-    things: ThingSettings = field(default_factory=ThingSettings)
 
     @property
     def mild_copies(self) -> int:
@@ -106,13 +102,8 @@ def _altered(
 
 def _behind(originals: Originals) -> list[Image]:
     """What may stand behind a hand: water and rooms, or where there is neither, what stands behind other hands."""
-    scenes = [scene.image for scene in _places(originals)]
+    scenes = [scene.image for scene in (*originals.backgrounds, *originals.scenes)]
     return scenes or [one.image for one in originals.hands]
-
-
-def _places(originals: Originals) -> list[Scene]:
-    """Water and rooms."""
-    return [*originals.backgrounds, *originals.scenes]
 
 
 def _hidden(
@@ -141,31 +132,13 @@ def _missed(
 def _regions(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    scenes = _places(originals)
+    scenes = [*originals.backgrounds, *originals.scenes]
     for number in range(first, last):
         for region in negatives(scenes[number : number + 1], settings.negative, random):
             if not scenes[number].hands:
                 # Water differs from picture to picture as people do from source to source, and weighs like them.
                 region = replace(region, source=f"{region.source} {number}")
             yield _relit(region, settings, random)
-
-
-def _things(
-    originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
-) -> Iterator[TrainingSample]:
-    # A hand that stands there by chance is none of the things.
-    places = [without_hands(place.image, place.hands) for place in _places(originals)[first:last]]
-    for number, place in enumerate(places, first):
-        for image, box in drawn_things(place, places, settings.things, random):
-            yield TrainingSample(
-                image=relight(image, None, settings.augment.light, random),
-                box=box,
-                side="left" if random.random() < 0.5 else "right",
-                token=NONE,
-                # As with water: things in one place are a kind of their own.
-                source=f"things {number}",
-                original=False,
-            )
 
 
 def _rendered(
@@ -185,7 +158,6 @@ KINDS: Mapping[str, Draw] = {
     "rendered": _rendered,
     "hidden": _hidden,
     "mild": _mild,
-    "things": _things,
 }
 """What draws the samples of a kind from the originals `first` to `last`; the place in this table seeds it."""
 COPIED = ("hands", "mild")

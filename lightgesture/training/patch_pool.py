@@ -116,15 +116,13 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
         ]
 
     tasks = parts("hands", len(originals.hands), settings.copies)
-    places = len(originals.backgrounds) + len(originals.scenes)
-    with_none = not originals.hands or any(hand.token == NONE for hand in originals.hands)
-    if with_none:
-        tasks += parts("regions", places, settings.rounds)
+    if not originals.hands or any(hand.token == NONE for hand in originals.hands):
+        scenes = len(originals.backgrounds) + len(originals.scenes)
+        tasks += parts("regions", scenes, settings.rounds)
         tasks += parts("missed", len(originals.hands), settings.rounds)
         tasks += parts("hidden", len(originals.hands), settings.rounds)
     tasks += parts("mild", len(originals.hands), settings.mild_copies)
-    tasks += parts("rendered", settings.rendered, 1)
-    return tasks + parts("things", places, settings.rounds if with_none else 0)
+    return tasks + parts("rendered", settings.rendered, 1)
 
 
 def _results(

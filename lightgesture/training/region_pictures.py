@@ -17,12 +17,11 @@ from lightgesture.datasets import (
     read_webcam,
 )
 from lightgesture.features.training import BoxedPicture
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Image
 from lightgesture.sources import read_picture
 from lightgesture.training.composites import Background, attenuate, expose
 from lightgesture.training.cutouts import Cutout, cut_out
 from lightgesture.training.left_out import LeftOut
-from lightgesture.training.painted_over import without_hands
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +71,7 @@ class Material:
 
     def rooms(self) -> list[Background]:
         """The frames with their hands painted over."""
-        return [Background(without_hands(one.image, one.boxes), *one.sources) for one in self.frames]
+        return [Background(without_hands(one), *one.sources) for one in self.frames]
 
     def waters(self) -> list[Background]:
         """The pictures of water as backgrounds."""
@@ -121,6 +120,17 @@ def cutouts(data: Path, without: LeftOut, settings: PictureSettings, seed: int) 
             if cutout is not None:
                 found.append(cutout)
     return found
+
+
+def without_hands(picture: BoxedPicture) -> Image:
+    """The frame as a background: each labelled hand painted over from what stands around it."""
+    mask = np.zeros(picture.image.shape[:2], np.uint8)
+    for x, y, width, height in picture.boxes:
+        margin_x, margin_y = width // 6, height // 5
+        cv2.rectangle(
+            mask, (x - margin_x, y - margin_y), (x + width + margin_x, y + height + margin_y), 255, -1
+        )
+    return cv2.inpaint(picture.image, mask, 5, cv2.INPAINT_TELEA)  # type: ignore[return-value]
 
 
 def variants(picture: BoxedPicture, rng: np.random.Generator) -> Iterator[BoxedPicture]:

@@ -29,12 +29,6 @@ def originals():
     return Originals(hands, [Scene(picture(90, 160), (), (), "water")])
 
 
-def things_of(originals, settings, folder):
-    """Patches of what is drawn into the first place."""
-    pool = make_pool(originals, settings, 0, 1, folder, lambda *_: None)
-    return pool.patches[pool.sources == "things 0"]
-
-
 def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
     pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
     assert pool.patches.shape[1:] == (20, 20, 3)
@@ -49,25 +43,7 @@ def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
     # Each picture of water is a source of its own.
     assert set(pool.tokens[pool.sources == "water 0"]) == {"none"}
     assert "water" not in pool.sources
-    # So is what is drawn into each of them.
-    assert set(pool.tokens[pool.sources == "things 0"]) == {"none"}
     assert any(source.startswith("synthetic") for source in pool.sources)
-
-
-def test_things_are_drawn_where_no_hand_is(originals, tmp_path):
-    bare = np.full((160, 160, 3), 128, np.uint8)
-    image = bare.copy()
-    image[40:120, 40:120] = (0, 0, 255)
-    settings = replace(SETTINGS, rounds=8)
-    seen, unseen = (
-        things_of(replace(originals, backgrounds=(), scenes=[place]), settings, tmp_path / str(number))
-        for number, place in enumerate(
-            (Scene(image, ((40, 40, 80, 80),), (), "room"), Scene(bare, (), (), "room"))
-        )
-    )
-    assert len(seen) > 10
-    # Painted over, the place is as if nobody had been there.
-    np.testing.assert_array_equal(seen, unseen)
 
 
 def test_processes_and_reruns_change_nothing(originals, tmp_path):
@@ -100,18 +76,6 @@ def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path)
     assert set(batch.truth.tolist()) == {0}
     same = samples.draw(np.random.default_rng(1), 300)
     np.testing.assert_array_equal(batch.patches, same.patches)
-
-
-def test_what_is_no_persons_sign_is_drawn_as_often_as_is_asked_for():
-    pool = pool_of(["a"] * 8 + ["water"] * 8, [0] * 8 + [-1] * 8)
-    every = np.ones(16, bool)
-
-    def share(factor):
-        samples = HandSamples(pool, every, ("5", "none"), 0, HandSampling(erased=0.0, beside=factor))
-        return samples.draw(np.random.default_rng(1), 4000).truth.mean()
-
-    assert share(1.0) == pytest.approx(1 / 2, abs=0.03)
-    assert share(3.0) == pytest.approx(3 / 4, abs=0.03)
 
 
 def pool_of(sources, hands):

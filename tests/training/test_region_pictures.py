@@ -8,8 +8,7 @@ import pytest
 
 from lightgesture.datasets import fold_of
 from lightgesture.training.left_out import LeftOut, left_out
-from lightgesture.training.painted_over import without_hands
-from lightgesture.training.region_pictures import PictureSettings, read_material
+from lightgesture.training.region_pictures import PictureSettings, read_material, without_hands
 
 SETTINGS = PictureSettings(cutouts_per_source=1)
 LANDMARKS = ";".join(f"{40 + 8 * (i % 5)};{100 - 4 * i}" for i in range(21))
@@ -102,4 +101,4 @@ def test_boxes_and_faces_shrink_with_the_picture(data):
 def test_a_background_keeps_nothing_of_the_hand(data):
     frame = read_material(data, LeftOut(), SETTINGS, 0).frames[0]
     assert frame.image[60:90, 110:140].mean() > 250
-    assert without_hands(frame.image, frame.boxes)[60:90, 110:140].mean() < 200
+    assert without_hands(frame)[60:90, 110:140].mean() < 200

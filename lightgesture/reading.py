@@ -28,7 +28,7 @@ class ReadingSettings:
     token_probability: float = 0.7
     edge_share: float = 0.02
     covered_share: float = 0.25
-    edge_factor: float = 0.8
+    edge_factor: float = 0.72
     crowded_factor: float = 0.9
 
 

@@ -130,13 +130,14 @@ def test_the_clearest_extent_is_read():
     ("row", "at_edge", "crowded", "token", "reason"),
     [
         ([0.9, 0.05, 0.05], False, False, "0", None),
-        ([0.9, 0.05, 0.05], True, True, "0", None),
+        ([0.98, 0.01, 0.01], True, True, "0", None),
+        ([0.9, 0.05, 0.05], True, True, None, "partial"),
         ([0.4, 0.3, 0.3], False, False, None, "low_confidence"),
         ([0.4, 0.3, 0.3], True, True, None, "partial"),
         ([0.4, 0.3, 0.3], False, True, None, "occluded"),
         ([0.75, 0.15, 0.1], False, True, None, "occluded"),
         ([0.85, 0.1, 0.05], False, True, "0", None),
-        ([0.85, 0.1, 0.05], True, False, None, "partial"),
+        ([0.9, 0.05, 0.05], True, False, None, "partial"),
         ([0.1, 0.2, 0.7], False, False, None, "unknown_shape"),
         ([0.1, 0.2, 0.7], True, True, None, "unknown_shape"),
     ],
@@ -195,7 +196,7 @@ def test_an_uncertain_side_lowers_the_confidence():
 
 def test_each_hand_is_read_from_its_own_rows():
     classifier = FakeClassifier([[0.9, 0.1, 0.0], [0.1, 0.8, 0.1], [0.2, 0.7, 0.1]])
-    first, second = Sighting("right", ((0, 0, 9, 9),), 1), Sighting("left", ((9, 9, 9, 9), (8, 8, 9, 9)), 2)
+    first, second = Sighting("right", ((1, 1, 9, 9),), 1), Sighting("left", ((9, 9, 9, 9), (8, 8, 9, 9)), 2)
     hands = ReadingStage(classifier).process(_noise(), [first, second])
     assert [hand.token for hand in hands] == ["0", "5"]
     assert classifier.asked[0][1] == ["right", "left", "left"]

@@ -22,7 +22,8 @@ class ReadingSettings:
         classifier is not sure.
     covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
     edge_factor, crowded_factor: factors on the confidence of a hand that is cut by the edge, and of one that is
-        crowded, 0.7 to 1; the smaller where it is both. What is read there must be clearer.
+        crowded, 0.7 to 1; the smaller where it is both. What is read there must be clearer; where `token_probability`
+        is above a factor, nothing is.
     """
 
     token_probability: float = 0.7

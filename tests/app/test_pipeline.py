@@ -150,6 +150,13 @@ def test_a_token_is_refused_with_its_reason(row, at_edge, crowded, token, reason
     assert found[1] == pytest.approx(max(row) * factor)
 
 
+def test_a_threshold_above_the_factor_reads_nothing_at_the_edge():
+    sure = np.array([1.0, 0.0, 0.0], np.float32)
+    settings = ReadingSettings(token_probability=0.75)
+    assert read_token(sure, CLASSES, False, True, settings)[0] == "0"
+    assert read_token(sure, CLASSES, True, False, settings)[::2] == (None, "partial")
+
+
 @pytest.mark.parametrize(
     ("others", "face", "expected"),
     [

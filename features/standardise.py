@@ -2,9 +2,10 @@
 
 The square root lifts the dark end, where a back-lit hand differs from the wall by two grey levels; taking each channel
 to mean 0 and deviation 1 is gray-world and contrast normalisation in one, so that cast, veil and exposure
-drop out. Everything is a function of one channel's value, hence a table of 256 entries a channel.
+drop out. Everything is a function of one channel's value, hence a table of 256 entries a channel for what is large.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -45,29 +46,39 @@ def channel_tables(picture: Image, settings: StandardSettings | None = None) -> 
 def patch_levels(
     patches: NDArray[np.uint8], quantisation: Quantisation, settings: StandardSettings | None = None
 ) -> NDArray[np.int8]:
-    """int8 (n, 256, 3): the integers that stand for `channel_tables` of small pictures, uint8 (n, h, w, 3).
+    """int8 (n, h, w, 3): the integers that stand for small pictures, uint8 (n, h, w, 3), standardised one by one.
 
-    The pictures are summed without their histograms, which take longer to count, and the tables come in one pass from
-    the square roots to the integers. Against `channel_tables` and `quantise` an integer is one off where rounding is
-    near a tie.
+    Pictures of a patch's size are summed and scaled themselves: a histogram and tables of 256 entries take longer than
+    1,024 pixels do. Against `channel_tables` and `quantise` an integer is one off where rounding is near a tie.
     """
     settings = settings or StandardSettings()
-    means = np.empty((2, len(patches), 3), np.float32)
-    for place, patch in enumerate(patches):
-        means[0, place] = cv2.mean(cv2.LUT(patch, _SINGLE_ROOTS))[:3]
-        means[1, place] = cv2.mean(patch)[:3]
-    mean, square = means[0], means[1] * np.float32(1 / 255)
-    deviation = np.sqrt(np.maximum(square - mean * mean, np.float32(0.0))) + np.float32(settings.evenness)
-    factor = np.float32(1.0 / quantisation.scale) / deviation
-    # The 256 values run innermost while they are reckoned: NumPy is slow along an axis of three.
-    levels = _SINGLE_ROOTS * factor[:, :, None]
-    levels += (np.float32(quantisation.zero) - mean * factor)[:, :, None]
-    reach = np.rint(np.float32(settings.largest) * np.float32(1.0 / quantisation.scale))
+    count, height, width = patches.shape[:3]
+    values = cv2.LUT(patches.reshape(count * height, width, 3), _SINGLE_ROOTS).reshape(patches.shape)
+    for patch, roots in zip(patches, values, strict=True):
+        cv2.transform(roots, _to_levels(cv2.mean(roots), cv2.mean(patch), quantisation, settings), roots)
+    reach = round(settings.largest / quantisation.scale)
     if quantisation.zero - reach > -128 or quantisation.zero + reach < 127:
-        np.clip(levels, quantisation.zero - reach, quantisation.zero + reach, out=levels)
+        np.clip(values, quantisation.zero - reach, quantisation.zero + reach, out=values)
     # One pass that rounds as NumPy does and saturates, where NumPy takes four.
-    rounded = cv2.add(levels.reshape(-1, 256), 0.0, dtype=cv2.CV_8S)  # type: ignore[call-overload]
-    return np.ascontiguousarray(rounded.reshape(levels.shape).transpose(0, 2, 1), np.int8)
+    rounded = cv2.add(values.reshape(count * height, -1), 0.0, dtype=cv2.CV_8S)  # type: ignore[call-overload]
+    return np.asarray(rounded, np.int8).reshape(patches.shape)
+
+
+def _to_levels(
+    roots: Sequence[float], values: Sequence[float], quantisation: Quantisation, settings: StandardSettings
+) -> Float:
+    """float32 (3, 4) that takes square roots to levels, given the means of the three channels' square roots and values.
+
+    The value over 255 is the square of its root, so both means give the deviation.
+    """
+    matrix = np.zeros((3, 4), np.float32)
+    for channel in range(3):
+        mean = roots[channel]
+        deviation = max(values[channel] / 255.0 - mean * mean, 0.0) ** 0.5 + settings.evenness
+        factor = 1.0 / (quantisation.scale * deviation)
+        matrix[channel, channel] = factor
+        matrix[channel, 3] = quantisation.zero - mean * factor
+    return matrix
 
 
 def luma_table(picture: Image, settings: StandardSettings | None = None) -> tuple[Image, Float]:

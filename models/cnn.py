@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -67,11 +66,7 @@ class CnnClassifier:
     def scores(self, patches: NDArray[np.uint8]) -> Float:
         """Scores of patches, uint8 (n, size, size, 3), BGR -> float32 (n, k)."""
         model, network = self.model, self._network
-        seen = np.empty(patches.shape, np.int8)
-        tables = patch_levels(patches, model.network.quantisation[PATCH])
-        for place, patch in enumerate(patches):
-            cv2.LUT(patch, tables[place, None], seen[place])
-        inputs = {PATCH: seen}
+        inputs = {PATCH: patch_levels(patches, model.network.quantisation[PATCH])}
         if model.contour is not None:
             numbers = (contour_vectors(patches, model.contour) - model.contour_mean) / model.contour_deviation
             inputs[CONTOUR] = network.table(CONTOUR, numbers)[:, None, None, :]

@@ -1,10 +1,8 @@
 """`lightgesture train svm`: the support vector machine that reads hand patches."""
 
 import argparse
-import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from lightgesture.commands.hand_data import add_data_arguments, count
 from lightgesture.commands.train import model_path
@@ -52,6 +50,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.models.train_svm import SvmSettings
     from lightgesture.training.card import summary
     from lightgesture.training.svm import SvmTraining, train_svm_to_file
+    from lightgesture.training.time_left import tenths
 
     if args.data is None and not args.synthetic:
         raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
@@ -74,49 +73,12 @@ def run(args: argparse.Namespace) -> int:
         svm = replace(svm, centres=args.centres)
     if args.steps is not None:
         svm = replace(svm, descent=replace(svm.descent, steps=args.steps))
+    progress = (lambda _: None) if args.quiet else say
     try:
-        with StepBars(args.quiet) as bars:
-            card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, bars.show)
+        card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, tenths(progress))
     except ModelError as error:
         raise UsageError(str(error)) from error
     if not args.quiet:
         for line in summary(card, out):
             say(line)
     return ExitStatus.OK
-
-
-class StepBars:
-    """A progress bar for one step after the other on stderr; where that is no terminal, a line for every tenth."""
-
-    def __init__(self, quiet: bool) -> None:
-        from lightgesture.training.time_left import tenths
-
-        self._quiet = quiet
-        self._lines = None if sys.stderr.isatty() else tenths(say)
-        self._step = ""
-        self._bar: Any = None
-
-    def __enter__(self) -> "StepBars":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._close()
-
-    def show(self, step: str, done: int, total: int) -> None:
-        """`done` of `total` of a step are done; a total of 0 is not known."""
-        if self._quiet:
-            return
-        if self._lines is not None:
-            self._lines(step, done, total)
-            return
-        if step != self._step:
-            from tqdm import tqdm
-
-            self._close()
-            self._bar = tqdm(desc=step, total=total or None, leave=False)
-            self._step = step
-        self._bar.update(done - self._bar.n)
-
-    def _close(self) -> None:
-        if self._bar is not None:
-            self._bar.close()

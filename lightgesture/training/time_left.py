@@ -5,6 +5,8 @@ from collections.abc import Callable
 
 MINUTE_S = 60.0
 HOUR_S = 3600.0
+UNKNOWN_S = 30.0
+"""Between two lines about a step of unknown length."""
 
 
 class TimeLeft:
@@ -27,14 +29,22 @@ class TimeLeft:
         return f"{seconds / MINUTE_S:.0f} min left" if seconds >= MINUTE_S else f"{seconds:.0f} s left"
 
 
-def tenths(progress: Callable[[str], None]) -> Callable[[str, int, int], None]:
-    """Tells every tenth of a step as a line, with the time left; of a step of unknown length (0), nothing."""
+def tenths(
+    progress: Callable[[str], None], clock: Callable[[], float] = time.monotonic
+) -> Callable[[str, int, int], None]:
+    """Tells every tenth of a step as a line, with the time left; of a step of unknown length (0), what is done by each
+    half a minute."""
     clocks: dict[str, TimeLeft] = {}
+    told: dict[str, float] = {}
 
     def show(step: str, done: int, total: int) -> None:
         if not total:
+            now = clock()
+            if now - told.setdefault(step, now) >= UNKNOWN_S:
+                told[step] = now
+                progress(f"{step}: {done} so far")
             return
-        left = clocks.setdefault(step, TimeLeft(total, done))
+        left = clocks.setdefault(step, TimeLeft(total, done, clock))
         if done * 10 // total > (done - 1) * 10 // total:
             progress(f"{step}: {done} of {total}, {left.told(done)}")
 

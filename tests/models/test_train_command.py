@@ -53,9 +53,7 @@ def test_folders_become_a_model_and_its_card(
     assert "wrote" in captured.err
 
 
-def test_steps_are_told_as_lines_where_there_is_no_terminal(
-    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_steps_are_told_as_lines(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert train(folder, tmp_path / "mine.npz") == 0
     told = capsys.readouterr().err.splitlines()
     assert "lightgesture: learn the machine: 50 of 50, done" in told

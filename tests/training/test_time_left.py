@@ -27,7 +27,16 @@ def test_every_tenth_of_each_step_is_a_line():
     show = tenths(lines.append)
     for done in range(1, 41):
         show("draw", done, 40)
-        show("count", done, 0)
     assert len(lines) == 10
     assert lines[0].startswith("draw: 4 of 40, ")
     assert lines[-1] == "draw: 40 of 40, done"
+
+
+def test_a_step_of_unknown_length_is_a_line_each_half_minute():
+    now = [5.0]
+    lines = []
+    show = tenths(lines.append, lambda: now[0])
+    for done in range(1, 71):
+        show("describe", done, 0)
+        now[0] += 1.0
+    assert lines == ["describe: 31 so far", "describe: 61 so far"]

@@ -12,7 +12,7 @@ from lightgesture.benchmarks.finding_tables import overlaps
 from lightgesture.benchmarks.regions import MAX_BOXES, SINGLE, Run, run_methods
 from lightgesture.benchmarks.scorer import percentile, share, total
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.datasets import read_negatives
+from lightgesture.training.datasets import read_negatives
 
 Item = TypeVar("Item")
 
@@ -36,7 +36,7 @@ def evaluate_ablation(data: Path, progress: Progress, folder: Path | None = None
     """Every variant on all pictures of a data folder, and on short clips.
 
     folder: the cache of clips, None to do without; jobs: processes that render what it lacks. Raises
-    lightgesture.features.selector_file.SelectorError.
+    lightgesture.features.find.selector_file.SelectorError.
     """
     methods = ablations()
     empty = read_negatives(data) if (data / "negatives").is_dir() else []

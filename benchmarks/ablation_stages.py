@@ -14,19 +14,24 @@ from numpy.typing import NDArray
 from lightgesture.benchmarks.finding import Stages, selector_method, variant
 from lightgesture.benchmarks.methods import Decoded, Image, Method
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.features.bank import bank_distances, hand_proximity
-from lightgesture.features.classical import describe_regions, scored_candidates
 from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find.bank import bank_distances, hand_proximity
+from lightgesture.features.find.classical import describe_regions, scored_candidates
+from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, region
+from lightgesture.features.find.pairs import score_pairs
+from lightgesture.features.find.peaks import logistic
+from lightgesture.features.find.proposals import Proposals, ProposalSettings, propose
+from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector_file import (
+    ClassicalParts,
+    LearnedParts,
+    load_classical,
+    load_learned,
+)
+from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
+from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
-from lightgesture.features.learned import HAND_IOU, NO_OUTLINE, Places, region
-from lightgesture.features.pairs import score_pairs
-from lightgesture.features.peaks import logistic
-from lightgesture.features.proposals import Proposals, ProposalSettings, propose
-from lightgesture.features.selector import RegionStage, SelectorName
-from lightgesture.features.selector_file import ClassicalParts, LearnedParts, load_classical, load_learned
-from lightgesture.features.selector_settings import CLASSICAL, LEARNED, SelectorSettings
 from lightgesture.features.skin_map import redness, stretch
-from lightgesture.features.trees import evaluate
 from lightgesture.features.types import Box, Candidates, HandRegion
 
 Float = NDArray[np.float32]

@@ -19,15 +19,9 @@ from lightgesture.benchmarks.region_tables import (
 from lightgesture.benchmarks.regions import Progress, Run, run_methods
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.tables import Table
-from lightgesture.datasets import (
-    Label,
-    Sample,
-    read_frames,
-    read_negatives,
-    read_webcam,
-)
-from lightgesture.features.selector import SELECTORS, SelectorName
+from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.sources import read_picture
+from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives, read_webcam
 
 HANDS = "hands"
 REGIONS = "regions"

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.datasets import Label
 from lightgesture.features.types import Box
+from lightgesture.training.datasets import Label
 
 Image = NDArray[np.uint8]
 

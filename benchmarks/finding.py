@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from lightgesture.benchmarks.methods import Image, PipelineMethod
 from lightgesture.benchmarks.regions import Progress, Run, run_sequence, run_single
 from lightgesture.benchmarks.shared_parts import shared_parts
-from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.profile import ColourProfile
-from lightgesture.features.selector import SELECTORS, RegionStage, SelectorName
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Box
+from lightgesture.hands.reading import ReadingStage
 from lightgesture.models import NONE
 from lightgesture.pipeline import Pipeline
-from lightgesture.reading import ReadingStage
-from lightgesture.training.left_out import LeftOut, read_left_out
+from lightgesture.training.datasets import Sample, group_samples, is_sequence
+from lightgesture.training.pool.left_out import LeftOut, read_left_out
 
 
 class NoReader:
@@ -75,7 +75,7 @@ def selector_method(
     """A method that finds by one of SELECTORS, with what `file` holds instead of what is bundled, called after both.
 
     selector may be a file itself, whose learned choice is then taken. profile: the colours of the hands. Raises
-    lightgesture.features.selector_file.SelectorError.
+    lightgesture.features.find.selector_file.SelectorError.
     """
     if selector not in SELECTORS:
         selector, file = SELECTORS[0], selector

@@ -28,7 +28,7 @@ def evaluate_clips(
     """Every selector in every clip; on gloves also with a colour profile that was learnt from other frames of them.
 
     folder: the cache; jobs: processes that render what it lacks; is_quick: every fifth clip of the suite. Raises
-    lightgesture.features.selector_file.SelectorError.
+    lightgesture.features.find.selector_file.SelectorError.
     """
     methods = [selector_method(selector) for selector in selectors]
 

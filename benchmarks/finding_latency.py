@@ -16,7 +16,7 @@ from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import Image, LatencySettings, RecordingClock, limited_threads
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.types import Candidates
 from lightgesture.sources import DEFAULT_FPS
 

@@ -10,8 +10,8 @@ from lightgesture.benchmarks.finding_tables import finding_tables
 from lightgesture.benchmarks.methods import Method
 from lightgesture.benchmarks.recorded import read_recorded, recorded_runs
 from lightgesture.benchmarks.regions import Progress, Run, run_methods
-from lightgesture.datasets import Sample, read_negatives, read_webcam
-from lightgesture.features.selector import SELECTORS
+from lightgesture.features.find.selector import SELECTORS
+from lightgesture.training.datasets import Sample, read_negatives, read_webcam
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,8 @@ from lightgesture.benchmarks.suite_cache import Clip, Take, fetch_clips
 from lightgesture.benchmarks.suite_scenarios import Scenario
 from lightgesture.benchmarks.suite_scoring import count_restarts, count_switches, score_hands
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.datasets import Label
 from lightgesture.sources import open_source
+from lightgesture.training.datasets import Label
 
 TILE_STEP = 15
 """Of missed hands in a clip a picture is kept at most every so many frames: neighbours look the same."""

@@ -14,9 +14,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.datasets import read_landmarks, read_table
 from lightgesture.sources import read_picture
-from lightgesture.training.cutouts import draw_hand
+from lightgesture.training.datasets import read_landmarks, read_table
+from lightgesture.training.pictures.cutouts import draw_hand
 
 Moments = NDArray[np.float64]
 Contour = NDArray[np.int32]

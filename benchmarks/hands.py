@@ -24,10 +24,10 @@ from lightgesture.benchmarks.scorer import (
     worst,
 )
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.datasets import Label, Sample
+from lightgesture.hands.reading import ReadingSettings, read_token
 from lightgesture.models import NONE
-from lightgesture.reading import ReadingSettings, read_token
 from lightgesture.sources import read_picture
+from lightgesture.training.datasets import Label, Sample
 
 UNSIDED = "left"
 """Side that a hand of unknown side is read as: it is not mirrored, as crops are not."""

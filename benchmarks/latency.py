@@ -17,6 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.finding_latency import finding_times, fresh_starts
 from lightgesture.benchmarks.hand_bank import build_bank
 from lightgesture.benchmarks.paper_chain import PaperChain
@@ -25,11 +26,10 @@ from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
 from lightgesture.cli import exit_status
 from lightgesture.console import print_line, say
-from lightgesture.datasets import find_data, group_samples, read_frames
-from lightgesture.decoding import SAMPLE
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
 from lightgesture.sources import open_source, read_picture
+from lightgesture.training.datasets import find_data, group_samples, read_frames
 
 PAPER = "paper's region selection"
 """Row of the baseline's chain."""

@@ -19,11 +19,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.mjpeg_server import MjpegServer, read_jpegs
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.console import native_messages_muted, print_line, say
-from lightgesture.decoding import SAMPLE
 from lightgesture.errors import ExitStatus, InputError
 
 TITLE = "Live: from the frame to its record"
@@ -109,9 +109,9 @@ def _live(address: str, cage: Sequence[str]) -> Iterator["subprocess.Popen[str]"
 
 def decode(address: str, settings: LiveLatencySettings) -> int:
     """What the other process does: decode the stream with a heartbeat after each frame."""
+    from lightgesture.actions.live import run_live
+    from lightgesture.config.settings import DecodeSettings
     from lightgesture.live import LiveSettings
-    from lightgesture.live.running import run_live
-    from lightgesture.settings import DecodeSettings
 
     options = DecodeSettings.model_validate({"json": True, "frames": True, "quiet": True})
     with native_messages_muted():

@@ -19,7 +19,9 @@ import cv2
 
 from lightgesture.benchmarks.regions import SEQUENCE, SINGLE
 from lightgesture.benchmarks.scorer import percentile
-from lightgesture.datasets import (
+from lightgesture.errors import InputError
+from lightgesture.sources import read_picture
+from lightgesture.training.datasets import (
     LANDMARK_MARGIN,
     Sample,
     find_data,
@@ -30,8 +32,6 @@ from lightgesture.datasets import (
     read_negatives,
     read_webcam,
 )
-from lightgesture.errors import InputError
-from lightgesture.sources import read_picture
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lightgesture.benchmarks.hand_bank import HandBank
 from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.features.selector import SELECTORS, SelectorName
+from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
 from lightgesture.pipeline import Pipeline

@@ -17,8 +17,8 @@ from torch.nn import functional
 
 from lightgesture.features.patch import PatchSettings, cut_patches
 from lightgesture.features.types import Box
-from lightgesture.models.train_svm import sample_weights
-from lightgesture.training.patch_pool import PatchPool
+from lightgesture.training.pool.patch_pool import PatchPool
+from lightgesture.training.svm.machine import sample_weights
 
 Float = NDArray[np.float32]
 

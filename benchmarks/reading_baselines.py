@@ -31,14 +31,14 @@ from lightgesture.benchmarks.study_cli import (
 )
 from lightgesture.benchmarks.tables import Table
 from lightgesture.console import say
-from lightgesture.datasets import find_data, read_hands
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.vector import VectorSettings
-from lightgesture.models.descent import DescentSettings
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.svm_file import write_svm_model
-from lightgesture.models.train_svm import SvmSettings, train_svm
-from lightgesture.training.patch_kinds import Originals
+from lightgesture.training.datasets import find_data, read_hands
+from lightgesture.training.pool.patch_kinds import Originals
+from lightgesture.training.svm.descent import DescentSettings
+from lightgesture.training.svm.machine import SvmSettings, train_svm
 from lightgesture.training.time_left import tenths
 
 CONTOURS, PAPER = "contours", "paper"
@@ -56,7 +56,7 @@ def contour_settings(centres: int, steps: int) -> SvmSettings:
 def run_contours(args: argparse.Namespace) -> None:
     """Train on the pool, write the model file, score it on `hands/val`."""
     from lightgesture.benchmarks.study_data import open_study
-    from lightgesture.training.pool_samples import PoolSampling, pool_samples
+    from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
 
     training = training_from(args)
     data = find_data(args.data)
@@ -80,7 +80,7 @@ def run_contours(args: argparse.Namespace) -> None:
 
 def run_paper(args: argparse.Namespace) -> None:
     """Train on the pool and score on `hands/val`."""
-    from lightgesture.training.checkpoints import need_torch
+    from lightgesture.training.nets.checkpoints import need_torch
 
     need_torch()
     from lightgesture.benchmarks.paper_net import PaperNetClassifier, PaperNetSettings, train_paper_net

@@ -14,8 +14,8 @@ from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import Image, limited_threads
-from lightgesture.features.network_nodes import multiply_adds
-from lightgesture.features.network_runner import Network
+from lightgesture.features.net.nodes import multiply_adds
+from lightgesture.features.net.runner import Network
 from lightgesture.features.types import Box
 from lightgesture.features.vector import block_lengths
 from lightgesture.models.cnn import CnnClassifier

@@ -22,10 +22,10 @@ from lightgesture.benchmarks.reliability import reliability_table
 from lightgesture.benchmarks.robustness import box_table, find_hands, found_table, random_table, trouble_table
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.tables import Table, side_by_side
-from lightgesture.datasets import Sample, group_samples, read_frames, read_hands, read_negatives
-from lightgesture.features.selector import SELECTORS
+from lightgesture.features.find.selector import SELECTORS
 from lightgesture.features.types import Box
 from lightgesture.sources import read_picture
+from lightgesture.training.datasets import Sample, group_samples, read_frames, read_hands, read_negatives
 
 VAL = "hands val"
 SURE = "hands val, none doubtful"

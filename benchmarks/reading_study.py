@@ -25,14 +25,14 @@ from lightgesture.benchmarks.study_cli import (
 from lightgesture.benchmarks.study_data import open_study
 from lightgesture.benchmarks.study_kinds import COUNTS, FOLDS, KINDS, STEPS
 from lightgesture.benchmarks.study_pools import POOLS
-from lightgesture.commands.train_cnn import PRECISIONS, SIZES
 from lightgesture.console import say
-from lightgesture.datasets import find_data
+from lightgesture.training.commands.train_cnn import PRECISIONS, SIZES
+from lightgesture.training.datasets import find_data
 
 
 def run(args: argparse.Namespace) -> None:
     """One study from the pool to its table."""
-    from lightgesture.training.checkpoints import need_torch
+    from lightgesture.training.nets.checkpoints import need_torch
 
     svm_alone, svm = (getattr(args, name, False) for name in ("svm_alone", "svm"))
     if not svm_alone:

@@ -12,8 +12,8 @@ from typing import Any
 
 from lightgesture.benchmarks.regions import SEQUENCE, SINGLE, Run, make_answer
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.errors import InputError
+from lightgesture.training.datasets import Sample, group_samples, is_sequence
 
 Recorded = dict[tuple[str, str], dict[str, tuple[Reading, ...]]]
 """Readings by method and mode, then by file."""

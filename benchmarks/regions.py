@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.scorer import Reading, Score, score_frame, total
-from lightgesture.datasets import Sample, group_samples, is_sequence
 from lightgesture.sources import DEFAULT_FPS, read_picture
+from lightgesture.training.datasets import Sample, group_samples, is_sequence
 
 MAX_BOXES = 2
 """A diver has two hands; a method may not win by guessing more boxes."""

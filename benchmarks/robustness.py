@@ -23,11 +23,11 @@ from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import Reading as FoundHand
 from lightgesture.benchmarks.scorer import is_token, matched_readings, share
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.datasets import Sample, fold_of
 from lightgesture.features.types import Box
+from lightgesture.hands.reading import ReadingSettings, read_token
 from lightgesture.models import NONE
-from lightgesture.reading import ReadingSettings, read_token
 from lightgesture.sources import read_picture
+from lightgesture.training.datasets import Sample, fold_of
 
 SEEN_SETS = frozenset({"funie", "rov25", "u45"})
 """Sets of `negatives` that the shipped models learn from; of the others they have seen nothing."""

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, permutations
 
-from lightgesture.datasets import Label
 from lightgesture.features.types import Box
+from lightgesture.training.datasets import Label
 
 FOUND_IOU = 0.5
 """Least IoU of a found hand: the PASCAL VOC criterion (Everingham et al., IJCV 2010)."""

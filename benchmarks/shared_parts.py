@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.network import IntegerNetwork
-from lightgesture.features.selector import SelectorName
-from lightgesture.features.selector_file import load_classical, load_learned
+from lightgesture.features.find.selector import SelectorName
+from lightgesture.features.find.selector_file import load_classical, load_learned
+from lightgesture.features.net.network import IntegerNetwork
 
 File = str | os.PathLike[str] | None
 """Path of a selector file; None for the bundled one."""

@@ -9,10 +9,10 @@ from pathlib import Path
 from lightgesture.benchmarks.study_data import training_of
 from lightgesture.benchmarks.tables import Table, to_text
 from lightgesture.console import ReaderGoneError, drop_output, print_line, say
-from lightgesture.datasets import find_data
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
-from lightgesture.training.cnn import CnnTraining
+from lightgesture.training.datasets import find_data
+from lightgesture.training.nets.cnn import CnnTraining
 
 
 def add_data_argument(parser: argparse.ArgumentParser) -> None:

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from lightgesture.benchmarks.hands import HandAnswer, classify
 from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.robustness import SEEN_SETS
-from lightgesture.datasets import Label, Sample, read_hands, read_table
 from lightgesture.errors import InputError
 from lightgesture.models import CLASSES
-from lightgesture.training.cnn import CnnTraining
-from lightgesture.training.originals import read_originals
-from lightgesture.training.patch_kinds import Originals, PoolSettings
-from lightgesture.training.patch_pool import PatchPool, make_pool
-from lightgesture.training.samples import HandRow, LabelledHand, load_hand, read_rows
+from lightgesture.training.datasets import Label, Sample, read_hands, read_table
+from lightgesture.training.nets.cnn import CnnTraining
+from lightgesture.training.pool.originals import read_originals
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool, make_pool
+from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.time_left import tenths
 
 LEFT_OUT = ("emre_drone",)

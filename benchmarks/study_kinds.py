@@ -26,15 +26,15 @@ from lightgesture.benchmarks.study_rows import (
     scored_cells,
 )
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.commands.train_cnn import SIZES
 from lightgesture.console import say
-from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
-from lightgesture.training.cnn import CnnTraining
-from lightgesture.training.kept_sources import kept_out
-from lightgesture.training.originals import read_originals
-from lightgesture.training.patch_kinds import Originals
-from lightgesture.training.patch_pool import rows_without
+from lightgesture.training.commands.train_cnn import SIZES
+from lightgesture.training.datasets import fold_of
+from lightgesture.training.nets.cnn import CnnTraining
+from lightgesture.training.pool.kept_sources import kept_out
+from lightgesture.training.pool.originals import read_originals
+from lightgesture.training.pool.patch_kinds import Originals
+from lightgesture.training.pool.patch_pool import rows_without
 
 FOLDS = 5
 SUBJECTS_ONE_IN = 5
@@ -81,10 +81,10 @@ def _svm_row(
     study: Study, name: str, chosen: Mask, held: Mask, training: CnnTraining, args: argparse.Namespace
 ) -> dict[str, Cell]:
     """The SVM on the same rows of the pool, and on the hands that they are copies of."""
-    from lightgesture.models.descent import DescentSettings
     from lightgesture.models.svm import SvmClassifier
-    from lightgesture.models.train_svm import SvmSettings, train_svm
-    from lightgesture.training.pool_samples import PoolSampling, pool_samples
+    from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
+    from lightgesture.training.svm.descent import DescentSettings
+    from lightgesture.training.svm.machine import SvmSettings, train_svm
 
     say(f"{name}: training")
     samples = pool_samples(

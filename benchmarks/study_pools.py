@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from lightgesture.training.patch_kinds import PoolSettings
+from lightgesture.training.pool.patch_kinds import PoolSettings
 
 Change = Callable[[PoolSettings], PoolSettings]
 EVERYTHING, NOTHING = "everything", "nothing"

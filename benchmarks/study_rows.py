@@ -11,7 +11,7 @@ from lightgesture.benchmarks.hands import HandAnswer, summary_cells
 from lightgesture.benchmarks.study_data import Mask, Study, answers_of, val_answers
 from lightgesture.benchmarks.tables import Cell
 from lightgesture.console import say
-from lightgesture.training.cnn import CnnTraining, in_integers, learn
+from lightgesture.training.nets.cnn import CnnTraining, in_integers, learn
 
 PARTS = ("hands", "accuracy", "macro_token", "worst_token", "worst_accuracy", "none_auroc")
 """Figures of a group of hands; see `hands.summary_table`."""
@@ -31,9 +31,9 @@ def fit_row(
     folder: of all trainings from this pool; each has one of its own there, so that rows of several studies that are the
     same training are trained once.
     """
-    from lightgesture.features.network_nodes import multiply_adds
+    from lightgesture.features.net.nodes import multiply_adds
     from lightgesture.models.cnn import CnnClassifier
-    from lightgesture.training.checkpoints import checkpoint_folder
+    from lightgesture.training.nets.checkpoints import checkpoint_folder
 
     chosen = sha256(np.packbits(rows).tobytes()).hexdigest()
     request = {"training": repr(replace(training, jobs=1)), "rows": chosen}

@@ -32,9 +32,9 @@ from lightgesture.benchmarks.suite_scoring import (
     score_instructions,
 )
 from lightgesture.benchmarks.synthetic_takes import SyntheticTake, drawing_digest
-from lightgesture.datasets import Label
 from lightgesture.sources import open_source
 from lightgesture.synth.script import sentence_words
+from lightgesture.training.datasets import Label
 
 Progress = Callable[[Iterable[Take], str], Iterable[Take]]
 """Passes takes on and shows how far they are, under a heading."""

@@ -7,15 +7,15 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from lightgesture.datasets import read_landmarks
 from lightgesture.errors import InputError
 from lightgesture.sources import read_picture
 from lightgesture.synth.diver import SIDES
 from lightgesture.synth.hand import decode, encode
 from lightgesture.synth.raster import Float32
-from lightgesture.training.cutouts import Cutout, cut_out
-from lightgesture.training.diver_composites import THUMB_TOKENS
-from lightgesture.training.real_hands import skin_colour
+from lightgesture.training.datasets import read_landmarks
+from lightgesture.training.pictures.cutouts import Cutout, cut_out
+from lightgesture.training.pictures.diver_composites import THUMB_TOKENS
+from lightgesture.training.pictures.real_hands import skin_colour
 
 Row = dict[str, str]
 Random = np.random.Generator

@@ -25,7 +25,6 @@ from lightgesture.benchmarks.suite_cast import (
     load_hands,
 )
 from lightgesture.benchmarks.suite_scenarios import REAL, Scenario, scenarios, scene_spec
-from lightgesture.datasets import read_table
 from lightgesture.fsm import load_grammar
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.synth.body import Camera
@@ -45,11 +44,12 @@ from lightgesture.synth.script import (
 )
 from lightgesture.synth.spec import SceneSpec
 from lightgesture.synth.variety import stream
-from lightgesture.training import cutouts, diver_composites, real_hands, surroundings
-from lightgesture.training.cutouts import Cutout
-from lightgesture.training.diver_composites import body_look
-from lightgesture.training.real_hands import PastedHand, Shown, draw_diver
-from lightgesture.training.surroundings import light_under_water, water_of_picture
+from lightgesture.training.datasets import read_table
+from lightgesture.training.pictures import cutouts, diver_composites, real_hands, surroundings
+from lightgesture.training.pictures.cutouts import Cutout
+from lightgesture.training.pictures.diver_composites import body_look
+from lightgesture.training.pictures.real_hands import PastedHand, Shown, draw_diver
+from lightgesture.training.pictures.surroundings import light_under_water, water_of_picture
 
 
 @dataclass(frozen=True, slots=True, eq=False)

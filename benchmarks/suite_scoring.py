@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 
 from lightgesture.benchmarks.scorer import Reading, Score, matched_readings, percentile, score_frame
-from lightgesture.datasets import Label
+from lightgesture.training.datasets import Label
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.selector_settings import SelectorSettings
+from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.types import Box
 
 

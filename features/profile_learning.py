@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.proposals import propose
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.profile import UNDECIDED, ColourProfile, Kind, colour_cells
-from lightgesture.features.proposals import propose
 from lightgesture.features.types import Box, Image
 
 Float = NDArray[np.float64]

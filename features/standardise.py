@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.network import Quantisation
+from lightgesture.features.net.network import Quantisation
 from lightgesture.features.types import Image
 
 Float = NDArray[np.float32]

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.hog import HogSettings, hog, hog_length
+from lightgesture.features.outline.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.patch import PatchSettings
 
 Float = NDArray[np.float32]

@@ -16,17 +16,26 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.interruption import terminated_as_interrupted
 
 COMMANDS = {
-    "decode": "videos, folders of frames and bags to instructions",
-    "live": "a camera or a stream to instructions, as they are signed",
-    "recognize": "single pictures to hands and their tokens",
-    "calibrate": "some seconds of open hands to a colour profile",
-    "doctor": "what runs on this machine, how fast, and what to do about what does not",
-    "train": "build a model from labelled pictures",
-    "evaluate": "score the models and the whole chain on labelled pictures or rendered dives",
-    "grammar": "check, show, draw or explain a grammar file",
-    "synth": "render dives of a synthetic diver with their truth",
+    "decode": ("lightgesture.commands.decode", "videos, folders of frames and bags to instructions"),
+    "live": ("lightgesture.commands.live", "a camera or a stream to instructions, as they are signed"),
+    "recognize": ("lightgesture.commands.recognize", "single pictures to hands and their tokens"),
+    "calibrate": ("lightgesture.commands.calibrate", "some seconds of open hands to a colour profile"),
+    "doctor": (
+        "lightgesture.commands.doctor",
+        "what runs on this machine, how fast, and what to do about what does not",
+    ),
+    "train": ("lightgesture.training.commands.train", "build a model from labelled pictures"),
+    "evaluate": (
+        "lightgesture.benchmarks.commands.evaluate",
+        "score the models and the whole chain on labelled pictures or rendered dives",
+    ),
+    "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
+    "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
 }
-"""Name of a command, which is its module in `lightgesture.commands` too, to its line of help."""
+"""Name of a command to its module and its line of help.
+
+By their paths, so that the application imports none of the rooms that are built on it.
+"""
 
 
 class Command(Protocol):
@@ -87,10 +96,10 @@ def _run(argv: list[str]) -> int:
     choices = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     # The options before the command take no value, so the first word without a dash is the command.
     chosen = next((word for word in argv if not word.startswith("-")), None)
-    for name, text in COMMANDS.items():
+    for name, (module, text) in COMMANDS.items():
         child = choices.add_parser(name, help=text, description=f"{name}: {text}", allow_abbrev=False)
         if name == chosen:
-            command = cast(Command, importlib.import_module(f"lightgesture.commands.{name}"))
+            command = cast(Command, importlib.import_module(module))
             command.add_arguments(child)
             child.set_defaults(run=command.run)
     try:

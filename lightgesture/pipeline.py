@@ -8,20 +8,20 @@ from typing import Self
 import numpy as np
 
 from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find.selector import RegionStage, SelectorName, choose
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.profile import load_profile
-from lightgesture.features.selector import RegionStage, SelectorName, choose
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Candidates, Image
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
+from lightgesture.hands.memory import memory_for_hold
+from lightgesture.hands.pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
+from lightgesture.hands.reading import ReadingStage, Sighting, is_crowded
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
-from lightgesture.reading import ReadingStage, Sighting, is_crowded
-from lightgesture.reading_memory import memory_for_hold
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
 from lightgesture.stage_clock import StageClock
-from lightgesture.stage_pictures import PictureSink, draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.threads import OneBlasThread
 
 
@@ -34,7 +34,7 @@ class Pipeline:
     None for the grammar's own. grammar: path of a grammar file, None for the bundled one. mirrored: frames come from a
     selfie camera. source: the name in the records. frames: give a frame record for each frame. debug: takes a
     picture of every stage of every frame.
-    Raises lightgesture.models.ModelError, lightgesture.features.selector_file.SelectorError,
+    Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
     lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
     """
 

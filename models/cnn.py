@@ -14,9 +14,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.contours import ContourSettings, contour_vectors
-from lightgesture.features.network import IntegerNetwork
-from lightgesture.features.network_runner import Backend, Network
+from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.features.net.runner import Backend, Network
+from lightgesture.features.outline.contours import ContourSettings, contour_vectors
 from lightgesture.features.patch import PatchSettings, cut_patches
 from lightgesture.features.standardise import patch_levels
 from lightgesture.features.types import Box

@@ -7,8 +7,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.contours import ContourSettings, contour_length
-from lightgesture.features.network_file import network_arrays, network_from
+from lightgesture.features.net.file import network_arrays, network_from
+from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel

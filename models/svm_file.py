@@ -10,8 +10,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.contours import ContourSettings
 from lightgesture.features.hog import HogSettings
+from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive

@@ -14,8 +14,8 @@ from typing import Any
 from lightgesture.archive.messages import Advanced, Done, Hear, Message, Outcome
 from lightgesture.archive.runner import Runner
 from lightgesture.archive.tasks import Task
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
-from lightgesture.settings import DecodeSettings
 
 CONNECT_S = 10.0
 """Seconds that a scheduler has to answer, and one of its workers to be there."""

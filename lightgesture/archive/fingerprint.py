@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
-from lightgesture.settings import DecodeSettings
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.sources import is_picture_name
 
 NO_INFLUENCE = frozenset({"as_json", "cluster", "jobs", "out", "quiet"})

@@ -16,10 +16,10 @@ from typing import Any
 from lightgesture.archive.fingerprint import input_fingerprint, run_fingerprint
 from lightgesture.archive.messages import Outcome
 from lightgesture.archive.tasks import Task
+from lightgesture.config.opening import make_folder
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
-from lightgesture.opening import make_folder
 from lightgesture.results.atomic import replacing
-from lightgesture.settings import DecodeSettings
 
 MANIFEST = ".lightgesture.json"
 LOCK = ".lightgesture.lock"

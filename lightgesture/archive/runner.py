@@ -12,9 +12,10 @@ from pathlib import Path
 
 from lightgesture.archive.messages import Advanced, Hear, Opened, Outcome, Printed
 from lightgesture.archive.tasks import Task
+from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
-from lightgesture.opening import make_debug_pictures, open_pipeline
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, Record, SummaryRecord
 from lightgesture.results import (
@@ -28,7 +29,6 @@ from lightgesture.results import (
     open_plot,
     open_writer,
 )
-from lightgesture.settings import DecodeSettings
 from lightgesture.sources import Source
 
 

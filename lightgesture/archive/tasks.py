@@ -5,8 +5,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.results.stems import output_stems
-from lightgesture.settings import DecodeSettings
 from lightgesture.sources import Source, is_picture_name, natural_key, open_source
 from lightgesture.sources.folder import FrameFolder
 from lightgesture.sources.standard_input import STANDARD_INPUT

@@ -20,9 +20,9 @@ from multiprocessing.context import SpawnContext
 from lightgesture.archive.messages import Advanced, Done, Hear, Message, Outcome, Printed
 from lightgesture.archive.runner import Runner
 from lightgesture.archive.tasks import Task
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.interruption import terminated_as_interrupted
-from lightgesture.settings import DecodeSettings
 
 REPORT_INTERVAL_S = 0.2
 """Seconds from one report of a worker to the next: quick for an eye, nothing for a pipe."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
 if TYPE_CHECKING:
-    from lightgesture.calibration import Calibration, Place
+    from lightgesture.actions.calibrate import Calibration, Place
     from lightgesture.features.types import Box
 
 LONGEST_S = 600.0
@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Learn, judge and write a profile; InputError where there are no hands or it separates poorly."""
-    from lightgesture.calibration import CalibrationSettings, calibrate
+    from lightgesture.actions.calibrate import CalibrationSettings, calibrate
     from lightgesture.console import native_messages_muted, print_line, say
     from lightgesture.features.profile import save_profile
     from lightgesture.results.atomic import replacing

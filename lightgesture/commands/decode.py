@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    from lightgesture.options import add_options
-    from lightgesture.settings import DECODE
+    from lightgesture.config.options import add_options
+    from lightgesture.config.settings import DECODE
 
     parser.add_argument(
         "inputs",
@@ -19,9 +19,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Decode the inputs; 0 when all were, 1 when some failed."""
+    from lightgesture.actions.decode import decode
+    from lightgesture.config.options import load_settings
     from lightgesture.console import native_messages_muted
-    from lightgesture.decoding import decode
-    from lightgesture.options import load_settings
     from lightgesture.sources import expand_inputs
 
     settings = load_settings(args)

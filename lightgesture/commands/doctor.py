@@ -14,9 +14,9 @@ def run(args: argparse.Namespace) -> int:
     """Examine and report; 0 when all that is needed works, 1 when something is broken."""
     import json
 
+    from lightgesture.actions.doctor import examine
     from lightgesture.console import print_line
-    from lightgesture.doctor import examine
-    from lightgesture.doctor_text import lines_of
+    from lightgesture.doctor.text import lines_of
 
     report = examine()
     if args.json:

@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.console import print_line
     from lightgesture.errors import ExitStatus, UsageError
     from lightgesture.fsm import GrammarError, load_grammar
-    from lightgesture.grammar_report import check, explain, show
+    from lightgesture.grammar.report import check, explain, show
 
     if args.file is not None and args.grammar is not None:
         raise UsageError(f"{args.file}, {args.grammar}: two grammars; name one")
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
             elif args.action == EXPLAIN:
                 lines = explain(grammar, args.sequence)
             else:
-                from lightgesture.grammar_drawing import draw
+                from lightgesture.grammar.drawing import draw
 
                 lines = [draw(grammar, args.out)]
     except GrammarError as error:

@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    from lightgesture.options import add_options
-    from lightgesture.settings import LIVE
+    from lightgesture.config.options import add_options
+    from lightgesture.config.settings import LIVE
 
     parser.add_argument(
         "source",
@@ -19,9 +19,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Decode until the stream ends for good or a signal comes; 0, or 130 after Ctrl-C."""
+    from lightgesture.actions.live import run_live
+    from lightgesture.config.options import load_settings
     from lightgesture.console import native_messages_muted
-    from lightgesture.live.running import run_live
-    from lightgesture.options import load_settings
 
     settings = load_settings(args)
     with native_messages_muted():

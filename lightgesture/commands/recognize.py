@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
-    from lightgesture.options import add_options
-    from lightgesture.settings import RECOGNIZE
+    from lightgesture.config.options import add_options
+    from lightgesture.config.settings import RECOGNIZE
 
     parser.add_argument("inputs", nargs="+", metavar="IMAGE", help="picture or glob")
     add_options(parser, RECOGNIZE)
@@ -14,9 +14,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Recognize the pictures; 0 when all were read, 1 when some failed."""
+    from lightgesture.actions.recognize import recognize
+    from lightgesture.config.options import load_settings
     from lightgesture.console import native_messages_muted
-    from lightgesture.options import load_settings
-    from lightgesture.recognition import recognize
     from lightgesture.sources import expand_inputs
 
     settings = load_settings(args)

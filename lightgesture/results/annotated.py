@@ -15,9 +15,9 @@ import cv2
 import numpy as np
 
 from lightgesture.features.types import Image
-from lightgesture.overlay import Overlay
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
+from lightgesture.results.overlay import Overlay
 
 if TYPE_CHECKING:
     from av.container import OutputContainer

@@ -1,7 +1,7 @@
 """From options to sinks."""
 
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
-from lightgesture.settings import DecodeSettings
 from lightgesture.sinks.hook import HookSink
 from lightgesture.sinks.mavlink_map import MavlinkMap, load_map
 from lightgesture.sinks.types import Sink

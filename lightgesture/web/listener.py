@@ -11,8 +11,8 @@ import cv2
 
 from lightgesture.errors import UsageError
 from lightgesture.features.types import Image
-from lightgesture.overlay import Overlay
 from lightgesture.records import Record
+from lightgesture.results.overlay import Overlay
 from lightgesture.web.board import Board
 from lightgesture.web.server import WebServer
 from lightgesture.web.settings import WebSettings

@@ -110,8 +110,10 @@ def fake(monkeypatch):
     """Put the fake in the pipeline's place."""
     monkeypatch.setattr(FakePipeline, "made", [])
     monkeypatch.setattr(FakePipeline, "interrupt_at", None)
-    monkeypatch.setattr("lightgesture.opening.Pipeline", FakePipeline)
-    monkeypatch.setattr("lightgesture.decoding.usable_cores", lambda: 1)  # worker processes have the real one
+    monkeypatch.setattr("lightgesture.config.opening.Pipeline", FakePipeline)
+    monkeypatch.setattr(
+        "lightgesture.actions.decode.usable_cores", lambda: 1
+    )  # worker processes have the real one
     return FakePipeline
 
 

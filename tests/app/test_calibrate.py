@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture import calibration
-from lightgesture.calibration import CalibrationSettings, learn, show_hands
+from lightgesture.actions import calibrate as calibration
+from lightgesture.actions.calibrate import CalibrationSettings, learn, show_hands
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.profile import load_profile

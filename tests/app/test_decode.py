@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from lightgesture import decoding
+from lightgesture.actions import decode as decoding
 from lightgesture.errors import ExitStatus
 
 pytestmark = pytest.mark.usefixtures("fake")

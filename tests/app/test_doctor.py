@@ -7,10 +7,11 @@ import sys
 
 import pytest
 
-from lightgesture import doctor, doctor_facts
-from lightgesture.doctor import FIRST, SAMPLE_TEXT, Probe, examine, run_probe, why_not_imported
-from lightgesture.doctor_facts import needs_of_extras, processor, read_memory
-from lightgesture.doctor_probe import ONLY_FIRST, peak_mib
+from lightgesture.actions import doctor
+from lightgesture.actions.doctor import FIRST, SAMPLE_TEXT, Probe, examine, run_probe, why_not_imported
+from lightgesture.doctor import facts as doctor_facts
+from lightgesture.doctor.facts import needs_of_extras, processor, read_memory
+from lightgesture.doctor.probe import ONLY_FIRST, peak_mib
 from lightgesture.errors import ExitStatus
 
 FINDINGS = {
@@ -149,7 +150,7 @@ def test_the_real_probe_to_its_first_record():
 def test_the_first_record_loads_nothing_that_it_does_not_need():
     heavy = {"av", "http.client", "matplotlib", "numba", "numpy.random", "scipy", "sklearn", "ssl", "torch"}
     code = (
-        "import sys; from lightgesture import doctor_probe; doctor_probe.main([doctor_probe.ONLY_FIRST]);"
+        "import sys; from lightgesture.doctor import probe; probe.main([probe.ONLY_FIRST]);"
         f"sys.exit(' '.join(sorted({heavy} & set(sys.modules))))"
     )
     done = subprocess.run(

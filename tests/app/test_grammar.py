@@ -9,8 +9,8 @@ import pytest
 
 from lightgesture.errors import ExitStatus
 from lightgesture.fsm import load_grammar
-from lightgesture.grammar_drawing import DrawingSettings, lay_out
-from lightgesture.grammar_report import merge_words
+from lightgesture.grammar.drawing import DrawingSettings, lay_out
+from lightgesture.grammar.report import merge_words
 
 BUNDLED = Path(load_grammar().file).read_text(encoding="utf-8")
 EXAMPLES = Path(__file__).parents[2] / "docs" / "grammars"

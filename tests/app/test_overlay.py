@@ -5,8 +5,8 @@ import pytest
 
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.overlay import Overlay, OverlayState, advance, render
 from lightgesture.records import FrameRecord, Hand
+from lightgesture.results.overlay import Overlay, OverlayState, advance, render
 
 HAND = Hand(side="left", token="ok", confidence=0.93, box=(40, 60, 50, 40), track=1, reason=None)
 REFUSED = Hand(side="right", token=None, confidence=0.3, box=(-9, -5, 80, 70), track=2, reason="partial")

@@ -4,10 +4,17 @@ import numpy as np
 import pytest
 
 from lightgesture import Pipeline
-from lightgesture.decoding import SAMPLE
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.hands.reading import (
+    ReadingSettings,
+    ReadingStage,
+    Sighting,
+    clearest,
+    is_crowded,
+    read_token,
+)
 from lightgesture.models import load_classifier
-from lightgesture.reading import ReadingSettings, ReadingStage, Sighting, clearest, is_crowded, read_token
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 from lightgesture.sources import open_source
 from lightgesture.stage_clock import KEPT_TIMES, StageClock
@@ -217,7 +224,7 @@ def test_no_sighting_asks_no_classifier():
 
 def test_the_picture_of_the_regions_shows_a_box_where_there_is_no_outline():
     from lightgesture.features.types import Candidates, HandRegion
-    from lightgesture.stage_pictures import draw_regions
+    from lightgesture.hands.pictures import draw_regions
 
     empty = np.zeros((0, 2), np.int32)
     outline = np.array([[50, 20], [60, 20], [55, 35]], np.int32)

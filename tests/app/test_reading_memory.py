@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.reading_memory import ReadingMemory, memory_for_hold
+from lightgesture.hands.memory import ReadingMemory, memory_for_hold
 
 SIGNS = {"5": (0.9, 0.1), "0": (0.1, 0.9)}
 

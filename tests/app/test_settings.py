@@ -4,9 +4,9 @@ import argparse
 
 import pytest
 
+from lightgesture.config.options import add_options, load_settings, read_config
+from lightgesture.config.settings import DECODE, LIVE, DecodeSettings
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.options import add_options, load_settings, read_config
-from lightgesture.settings import DECODE, LIVE, DecodeSettings
 
 
 def load(*arguments):

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 import pytest
 
+from lightgesture.config.settings import DEFAULT_FPS
 from lightgesture.errors import InputError
-from lightgesture.settings import DEFAULT_FPS
 from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
 from lightgesture.sources.pictures import to_bgr8
 from lightgesture.sources.video import VideoFile, VideoSettings

@@ -11,9 +11,9 @@ import pytest
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.suite_scenarios import Scenario
-from lightgesture.datasets import DATA_FOLDER
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.synth.scene import SceneFrame
+from lightgesture.training.datasets import DATA_FOLDER
 
 SKIN = (120, 150, 210)
 """BGR of a pale hand under neutral light: hue 10, saturation 109."""

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.ablation import ablation_table
 from lightgesture.benchmarks.ablation_stages import (
     ONE_THRESHOLD,
@@ -24,17 +25,16 @@ from lightgesture.benchmarks.ablation_stages import (
 from lightgesture.benchmarks.finding_suite import FindingAnswer
 from lightgesture.benchmarks.regions import Run, make_answer
 from lightgesture.benchmarks.scorer import Reading, score_frame
-from lightgesture.datasets import Label, Sample
-from lightgesture.decoding import SAMPLE
-from lightgesture.features.classical import ClassicalSelector
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.learned import Places
-from lightgesture.features.proposals import propose
-from lightgesture.features.selector import RegionStage
-from lightgesture.features.selector_file import load_classical, load_learned
-from lightgesture.features.selector_settings import CLASSICAL
+from lightgesture.features.find.classical import ClassicalSelector
+from lightgesture.features.find.learned import Places
+from lightgesture.features.find.proposals import propose
+from lightgesture.features.find.selector import RegionStage
+from lightgesture.features.find.selector_file import load_classical, load_learned
+from lightgesture.features.find.settings import CLASSICAL
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.sources import open_source
+from lightgesture.training.datasets import Label, Sample
 
 
 @pytest.fixture(name="scene", scope="module")

@@ -3,7 +3,8 @@
 import pytest
 
 from lightgesture.benchmarks.scorer import iou
-from lightgesture.datasets import (
+from lightgesture.errors import InputError
+from lightgesture.training.datasets import (
     Label,
     find_data,
     group_samples,
@@ -13,7 +14,6 @@ from lightgesture.datasets import (
     read_negatives,
     read_webcam,
 )
-from lightgesture.errors import InputError
 
 
 def test_landmark_boxes_are_grown_to_the_outline_and_read_as_left_hands(data):

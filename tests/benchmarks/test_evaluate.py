@@ -12,8 +12,8 @@ import pytest
 
 from lightgesture import models
 from lightgesture.benchmarks import ablation, accuracy, finding_report, reading_cost, reading_report
+from lightgesture.benchmarks.commands import evaluate
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
-from lightgesture.commands import evaluate
 from lightgesture.errors import InputError, UsageError
 
 

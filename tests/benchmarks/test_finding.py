@@ -13,9 +13,8 @@ from lightgesture.benchmarks.finding_tables import finding_tables, found_table
 from lightgesture.benchmarks.regions import Run, make_answer, run_methods, run_single
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.shared_parts import shared_parts
-from lightgesture.datasets import Label, Sample, read_frames, read_negatives
-from lightgesture.features.selector import RegionStage
-from lightgesture.features.selector_file import (
+from lightgesture.features.find.selector import RegionStage
+from lightgesture.features.find.selector_file import (
     BUNDLED,
     Selector,
     SelectorError,
@@ -23,9 +22,10 @@ from lightgesture.features.selector_file import (
     load_learned,
     save_selector,
 )
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Candidates
-from lightgesture.reading import ReadingStage, Sighting
+from lightgesture.hands.reading import ReadingStage, Sighting
+from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
 
 
 def show_nothing(samples, _heading):

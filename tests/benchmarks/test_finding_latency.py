@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks import finding_latency
 from lightgesture.benchmarks.finding_latency import (
     FOLLOWED,
@@ -23,10 +24,9 @@ from lightgesture.benchmarks.finding_latency import (
     without_litert,
 )
 from lightgesture.benchmarks.timing import LatencySettings
-from lightgesture.decoding import SAMPLE
-from lightgesture.features.network_numpy import NumpyRunner
-from lightgesture.features.network_runner import Network
-from lightgesture.features.selector_file import load_learned
+from lightgesture.features.find.selector_file import load_learned
+from lightgesture.features.net.reference import NumpyRunner
+from lightgesture.features.net.runner import Network
 from lightgesture.sources import open_source
 
 QUICK = LatencySettings(rounds=2, warm_up=3, starts=1)

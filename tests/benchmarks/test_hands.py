@@ -9,8 +9,8 @@ from lightgesture.benchmarks.hands import (
     confusion_table,
     summary_table,
 )
-from lightgesture.datasets import read_frames, read_hands
 from lightgesture.errors import InputError
+from lightgesture.training.datasets import read_frames, read_hands
 
 
 def test_boxes_and_sides_reach_the_classifier(data, fake_classifier):

@@ -12,7 +12,7 @@ from lightgesture.benchmarks.reading_pictures import (
     error_sheet,
     reliability_diagram,
 )
-from lightgesture.datasets import read_hands
+from lightgesture.training.datasets import read_hands
 
 
 @pytest.fixture

@@ -8,8 +8,8 @@ import pytest
 from lightgesture.benchmarks.mediapipe_hands import describe
 from lightgesture.benchmarks.recorded import read_recorded, recorded_runs
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.datasets import read_frames
 from lightgesture.errors import InputError
+from lightgesture.training.datasets import read_frames
 
 
 def row(file, mode="single", hands=(), method="other"):

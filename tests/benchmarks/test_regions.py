@@ -11,7 +11,7 @@ from lightgesture.benchmarks.region_tables import (
     tokens_table,
 )
 from lightgesture.benchmarks.regions import run_methods
-from lightgesture.datasets import read_frames, read_negatives
+from lightgesture.training.datasets import read_frames, read_negatives
 
 
 def show_nothing(samples, _heading):

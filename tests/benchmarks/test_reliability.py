@@ -5,7 +5,7 @@ import pytest
 
 from lightgesture.benchmarks.hands import HandAnswer
 from lightgesture.benchmarks.reliability import calibration_error, reliability_bins, reliability_table
-from lightgesture.datasets import Label, Sample
+from lightgesture.training.datasets import Label, Sample
 
 CLASSES = ("2", "5", "none")
 

@@ -23,7 +23,7 @@ from lightgesture.benchmarks.scorer import (
     wilson_interval,
     worst,
 )
-from lightgesture.datasets import Label
+from lightgesture.training.datasets import Label
 
 boxes = st.tuples(*[st.integers(-50, 50)] * 2, *[st.integers(1, 60)] * 2)
 

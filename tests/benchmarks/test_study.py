@@ -17,12 +17,12 @@ from lightgesture.benchmarks.study_data import (
 )
 from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
 from lightgesture.benchmarks.study_rows import mean_and_worst
-from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
-from lightgesture.training import checkpoints
-from lightgesture.training.patch_kinds import PoolSettings
-from lightgesture.training.patch_pool import PatchPool
+from lightgesture.training.datasets import fold_of
+from lightgesture.training.nets import checkpoints
+from lightgesture.training.pool.patch_kinds import PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool
 
 TOKENS = ("1", "5", "none")
 

@@ -8,12 +8,12 @@ import pytest
 
 from lightgesture import models
 from lightgesture.benchmarks import accuracy, suite
+from lightgesture.benchmarks.commands import evaluate
 from lightgesture.benchmarks.methods import decoded
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.suite_cache import fetch_clip
 from lightgesture.benchmarks.suite_scenarios import LAND, NEGATIVE, REAL, SIZE, WATER, Scenario
 from lightgesture.benchmarks.suite_tables import all_tables
-from lightgesture.commands import evaluate
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Decoder, load_grammar
 

@@ -14,7 +14,7 @@ from lightgesture.benchmarks.suite_scoring import (
     score_hands,
     score_instructions,
 )
-from lightgesture.datasets import Label
+from lightgesture.training.datasets import Label
 
 LEFT, RIGHT = (100, 20, 20, 20), (10, 20, 20, 20)
 WORDS = st.lists(st.sampled_from(["STOP", "5", "AND", "GO"]), max_size=8)

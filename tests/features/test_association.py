@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.features.association import (
+from lightgesture.features.track.association import (
     assign,
     assign_nearest,
     expect,
@@ -10,7 +10,7 @@ from lightgesture.features.association import (
     nearest_extent,
     squared_distance,
 )
-from lightgesture.features.motion import measure, start_state
+from lightgesture.features.track.motion import measure, start_state
 
 GATE = 13.3
 

@@ -9,10 +9,10 @@ import pytest
 
 from lightgesture.features import find_hands
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.curvature import curvature_points
+from lightgesture.features.find.proposals import propose
+from lightgesture.features.outline.curvature import curvature_points
+from lightgesture.features.outline.shape import convexity_defects, solidity
 from lightgesture.features.profile import ColourProfile
-from lightgesture.features.proposals import propose
-from lightgesture.features.shape import convexity_defects, solidity
 
 SKIN, WATER = (110, 140, 200), (150, 120, 40)
 MOST_SECONDS = 3.0

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.bank import OTHER, bank_distances, build_bank, hand_proximity, k_means
-from lightgesture.features.bank_file import bank_arrays, bank_from
-from lightgesture.features.descriptors import DescriptorSettings, describe_outlines, mirrored
+from lightgesture.features.find.bank import OTHER, bank_distances, build_bank, hand_proximity, k_means
+from lightgesture.features.find.bank_file import bank_arrays, bank_from
+from lightgesture.features.find.descriptors import DescriptorSettings, describe_outlines, mirrored
 
 SETTINGS = DescriptorSettings()
 

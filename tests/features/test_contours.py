@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lightgesture.features.contours import (
+from lightgesture.features.outline.contours import (
     SHAPE_NUMBERS,
     ContourSettings,
     contour_length,
@@ -14,7 +14,7 @@ from lightgesture.features.contours import (
     radial_signature,
     segment,
 )
-from lightgesture.features.shape import convexity_defects
+from lightgesture.features.outline.shape import convexity_defects
 
 WIDE = ContourSettings(size=256)
 

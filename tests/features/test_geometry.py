@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import best_distinct, box_iou, keep_distinct, pairwise_iou
-from lightgesture.features.selector_settings import SelectorSettings
 
 
 def _written_out(boxes, scores, selection):

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features import shape
-from lightgesture.features.curvature import CurvatureSettings, curvature_points
-from lightgesture.features.hu import hu_moments
-from lightgesture.features.resample import resample
+from lightgesture.features.outline import shape
+from lightgesture.features.outline.curvature import CurvatureSettings, curvature_points
+from lightgesture.features.outline.hu import hu_moments
+from lightgesture.features.outline.resample import resample
 
 VERTICES = 300
 DEGREES = np.array([1, 2, 3, 3, 6, 4, 6])

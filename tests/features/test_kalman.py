@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.features import kalman
+from lightgesture.features.track import kalman
 
 
 def _reference():

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from lightgesture.features.motion import (
+from lightgesture.features.track.motion import (
     ClosedFilter,
     FilterError,
     clip_box,

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.network import IntegerNetwork, Quantisation, Weights
-from lightgesture.features.network_file import network_arrays, network_from
-from lightgesture.features.network_nodes import WEIGHTED, NetworkError, Node, infer_shapes, weight_shape
-from lightgesture.features.network_runner import Network
+from lightgesture.features.net.file import network_arrays, network_from
+from lightgesture.features.net.network import IntegerNetwork, Quantisation, Weights
+from lightgesture.features.net.nodes import WEIGHTED, NetworkError, Node, infer_shapes, weight_shape
+from lightgesture.features.net.runner import Network
 
 NODES = (
     Node("stem", "conv", ("x",), 8, 3, 2, "relu6"),
@@ -103,7 +103,7 @@ def test_a_net_without_dense_layers_takes_pictures_of_any_size():
 
 def test_any_number_of_pictures_goes_through_one_plan_to_what_each_gives_alone():
     pytest.importorskip("ai_edge_litert")
-    from lightgesture.features.network_litert import LiteRtRunner
+    from lightgesture.features.net.litert import LiteRtRunner
 
     runner = LiteRtRunner(random_network(3))
     pictures = _input(4, 5)["x"]
@@ -117,7 +117,7 @@ def test_any_number_of_pictures_goes_through_one_plan_to_what_each_gives_alone()
 
 def test_pictures_of_many_sizes_keep_a_bounded_number_of_plans():
     pytest.importorskip("ai_edge_litert")
-    from lightgesture.features.network_litert import MOST_PLANNED, LiteRtRunner
+    from lightgesture.features.net.litert import MOST_PLANNED, LiteRtRunner
 
     runner = LiteRtRunner(random_network(5, NODES[:8], ("maps",)))
     for side in range(2, 2 + MOST_PLANNED + 3):
@@ -189,8 +189,8 @@ def test_without_lite_rt_the_reference_runs_and_a_wish_for_it_is_told(monkeypatc
 
 def test_a_trained_network_and_its_integers_nearly_agree():
     torch = pytest.importorskip("torch")
-    from lightgesture.training.quantise import quantise
-    from lightgesture.training.torch_network import TorchNetwork
+    from lightgesture.training.nets.quantise import quantise
+    from lightgesture.training.nets.torch_network import TorchNetwork
 
     torch.manual_seed(0)
     module = TorchNetwork({"x": SHAPE}, NODES, ("maps", "end"))

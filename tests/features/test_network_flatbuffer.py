@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.network import Quantisation
-from lightgesture.features.network_flatbuffer import to_flatbuffer
-from lightgesture.features.selector_file import load_learned
+from lightgesture.features.find.selector_file import load_learned
+from lightgesture.features.net.flatbuffer import to_flatbuffer
+from lightgesture.features.net.network import Quantisation
 
 PICTURE = (128, 160, 3)
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from lightgesture.features import find_hands
-from lightgesture.features.cells import describe
 from lightgesture.features.colour import ColourSettings, ColourStage, reduce_picture
+from lightgesture.features.find.cells import describe
+from lightgesture.features.find.proposals import propose
+from lightgesture.features.find.selector import RegionStage, SelectorSettings, choose
 from lightgesture.features.geometry import mirror_box, pairwise_iou, scale_box
-from lightgesture.features.proposals import propose
-from lightgesture.features.selector import RegionStage, SelectorSettings, choose
+from lightgesture.features.outline.wrist import WristSettings, cut_forearm, palm_circle
 from lightgesture.features.types import Candidates, HandRegion
-from lightgesture.features.wrist import WristSettings, cut_forearm, palm_circle
 
 SKIN, WATER = (110, 140, 200), (150, 120, 40)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.selector_file import (
+from lightgesture.features.find.selector_file import (
     BUNDLED,
     Selector,
     SelectorError,
@@ -11,8 +11,8 @@ from lightgesture.features.selector_file import (
     load_learned,
     save_selector,
 )
-from lightgesture.features.training import export_trees
-from lightgesture.features.trees import Trees, evaluate
+from lightgesture.features.find.trees import Trees, evaluate
+from lightgesture.training.regions.trees import export_trees
 
 
 def test_exported_trees_predict_what_the_library_predicts():

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lightgesture.features import shape
-from lightgesture.features.curvature import CurvatureSettings, curvature_points
-from lightgesture.features.resample import resample
+from lightgesture.features.outline import shape
+from lightgesture.features.outline.curvature import CurvatureSettings, curvature_points
+from lightgesture.features.outline.resample import resample
 
 SQUARE = np.array([[10, 10], [30, 10], [30, 30], [10, 30]], np.int32)
 ARROW = np.array([[0, 0], [100, 40], [0, 80], [30, 40]], np.int32)

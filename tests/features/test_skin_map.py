@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.datasets import find_data, read_webcam
 from lightgesture.errors import InputError
 from lightgesture.features.colour import ColourSettings, reduce_picture
 from lightgesture.features.skin_map import (
@@ -19,6 +18,7 @@ from lightgesture.features.skin_map import (
     skin_map,
     stretch,
 )
+from lightgesture.training.datasets import find_data, read_webcam
 
 SETTINGS = SkinMapSettings()
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.network import Quantisation, dequantise, quantise
+from lightgesture.features.net.network import Quantisation, dequantise, quantise
 from lightgesture.features.standardise import StandardSettings, channel_tables, patch_levels
 
 FINE = Quantisation(3.0 / 127.5, -1)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from lightgesture.features.sides import lone_side, pair_sides
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.sides import lone_side, pair_sides
+from lightgesture.features.track.tracker import TrackStage
 
 STEP = 1 / 30
 

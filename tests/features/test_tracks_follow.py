@@ -2,8 +2,8 @@
 
 import pytest
 
-from lightgesture.features.track_settings import TrackSettings
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.settings import TrackSettings
+from lightgesture.features.track.tracker import TrackStage
 
 STEP = 1 / 30
 

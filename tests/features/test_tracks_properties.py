@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.evidence import blend, is_verified, observe
-from lightgesture.features.track_settings import TrackSettings
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.evidence import blend, is_verified, observe
+from lightgesture.features.track.settings import TrackSettings
+from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Candidates, HandRegion
 
 PICTURE = (320, 240)

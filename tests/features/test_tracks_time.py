@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from lightgesture.features.track_settings import TrackSettings
-from lightgesture.features.tracks import TrackStage
+from lightgesture.features.track.settings import TrackSettings
+from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Candidates
 
 RATES = (10, 30, 60)

@@ -1,7 +1,7 @@
 import numpy as np
 
-from lightgesture.features.contours import contour_vectors
 from lightgesture.features.hog import hog
+from lightgesture.features.outline.contours import contour_vectors
 from lightgesture.features.vector import VectorSettings, block_lengths, feature_vectors
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.wrist import WristSettings, arm_direction, cut_forearm, palm_circle
+from lightgesture.features.outline.wrist import WristSettings, arm_direction, cut_forearm, palm_circle
 
 SETTINGS = WristSettings()
 

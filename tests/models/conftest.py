@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightgesture.features.contours import ContourSettings
 from lightgesture.features.hog import HogSettings
+from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings
 from lightgesture.models import TrainingSample
-from lightgesture.models.descent import DescentSettings
-from lightgesture.models.train_svm import SvmSettings
+from lightgesture.training.svm.descent import DescentSettings
+from lightgesture.training.svm.machine import SvmSettings
 
 SMALL = VectorSettings(PatchSettings(size=24), HogSettings(rim=0, cell=6), ContourSettings(size=24))
 """Features that take little time."""

@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.augment import AugmentSettings, augment, hand_mask, shifted_box
-from lightgesture.training.light import LightSettings, relight, under_water
-from lightgesture.training.negatives import NegativeSettings, Scene, missed_hand, negatives
-from lightgesture.training.samples import LabelledHand, landmark_box
+from lightgesture.training.pictures.augment import AugmentSettings, augment, hand_mask, shifted_box
+from lightgesture.training.pictures.light import LightSettings, relight, under_water
+from lightgesture.training.pool.negatives import NegativeSettings, Scene, missed_hand, negatives
+from lightgesture.training.pool.samples import LabelledHand, landmark_box
 
 STILL = LightSettings(gamma=0, contrast=0, gain=0, gradient=0, dark=0, backlit=0, water=0, blur=0, noise=0)
 """Light that changes nothing."""

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightgesture.features.contours import ContourSettings, contour_length
-from lightgesture.features.network import IntegerNetwork, Quantisation, Weights
-from lightgesture.features.network_nodes import WEIGHTED, Node, Shape, infer_shapes, weight_shape
+from lightgesture.features.net.network import IntegerNetwork, Quantisation, Weights
+from lightgesture.features.net.nodes import WEIGHTED, Node, Shape, infer_shapes, weight_shape
+from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models import ModelError, load_classifier
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnClassifier, CnnModel

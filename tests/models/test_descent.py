@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn.metrics.pairwise import rbf_kernel
 
-from lightgesture.models.descent import DescentSettings, Machine, descend, hinge_gradients
+from lightgesture.training.svm.descent import DescentSettings, Machine, descend, hinge_gradients
 
 
 @pytest.fixture

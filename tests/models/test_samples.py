@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import InputError
-from lightgesture.training.samples import landmark_box, load_hand, read_rows
+from lightgesture.training.pool.samples import landmark_box, load_hand, read_rows
 
 HEADER = "path,token,set,hx0,hy0,hx1,hy1,lm,side,licence\n"
 

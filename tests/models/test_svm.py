@@ -13,7 +13,7 @@ from lightgesture.features.vector import block_lengths, feature_vectors
 from lightgesture.models import TrainingSample, load_classifier
 from lightgesture.models.svm import SvmClassifier, radial_kernel, softmax
 from lightgesture.models.svm_file import SvmModel
-from lightgesture.models.train_svm import SvmSettings, assign_folds, sample_weights, train_svm
+from lightgesture.training.svm.machine import SvmSettings, assign_folds, sample_weights, train_svm
 
 Draw = Callable[[str, int], np.ndarray]
 

@@ -8,7 +8,7 @@ import pytest
 
 from lightgesture.models import ModelError, TrainingSample, load_classifier
 from lightgesture.models.svm_file import SvmModel, read_svm_model, write_svm_model
-from lightgesture.models.train_svm import SvmSettings, train_svm
+from lightgesture.training.svm.machine import SvmSettings, train_svm
 
 
 @pytest.fixture

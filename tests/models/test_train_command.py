@@ -8,8 +8,8 @@ from lightgesture.cli import main
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
-from lightgesture.training.patch_kinds import PoolSettings
-from lightgesture.training.svm import SvmTraining
+from lightgesture.training.pool.patch_kinds import PoolSettings
+from lightgesture.training.svm.train import SvmTraining
 
 
 def train(folder: Path, out: Path, *more: str) -> int:

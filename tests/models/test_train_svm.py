@@ -8,7 +8,13 @@ from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError, TrainingSample
 from lightgesture.models.calibration import fit_temperature
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.models.train_svm import SvmSettings, assign_folds, kept_samples, sample_weights, train_svm
+from lightgesture.training.svm.machine import (
+    SvmSettings,
+    assign_folds,
+    kept_samples,
+    sample_weights,
+    train_svm,
+)
 
 NAMES = ("1", "5", "none")
 

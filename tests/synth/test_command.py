@@ -5,8 +5,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.commands import synth
 from lightgesture.errors import UsageError
+from lightgesture.synth import command as synth
 from lightgesture.synth.parallel import render_frames
 from lightgesture.synth.sample import SAMPLE_SPEC
 from lightgesture.synth.scene import Scene

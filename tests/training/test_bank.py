@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from lightgesture.datasets import find_data
 from lightgesture.errors import InputError
-from lightgesture.features.bank import OTHER, OTHER_TIMES
+from lightgesture.features.find.bank import OTHER, OTHER_TIMES
 from lightgesture.models import CLASSES, NONE
-from lightgesture.training import bank as training
-from lightgesture.training.bank import BankTraining, hand_outlines, make_bank
-from lightgesture.training.left_out import LeftOut
+from lightgesture.training.datasets import find_data
+from lightgesture.training.pool.left_out import LeftOut
+from lightgesture.training.regions import bank as training
+from lightgesture.training.regions.bank import BankTraining, hand_outlines, make_bank
 
 FEW = BankTraining(centres=2, hands=3, frames=4, others=6)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lightgesture.models.train_svm import HeldOut
 from lightgesture.training.card import COST_OF_WRONG, held_out_section, operating_points
+from lightgesture.training.svm.machine import HeldOut
 
 CLASSES = ("1", "5", "none")
 

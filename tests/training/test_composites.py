@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.composites import Background, Composer, CompositeSettings, attenuate
-from lightgesture.training.cutouts import cut_out, draw_hand
+from lightgesture.training.pictures.composites import Background, Composer, CompositeSettings, attenuate
+from lightgesture.training.pictures.cutouts import cut_out, draw_hand
 
 
 def _landmarks():

@@ -10,11 +10,11 @@ from lightgesture.synth.body import BodyLook, Camera
 from lightgesture.synth.diver import ArmState, DiverState
 from lightgesture.synth.shading import Light
 from lightgesture.synth.water import make_water
-from lightgesture.training.composites import Background, CompositeSettings
-from lightgesture.training.cutouts import Cutout
-from lightgesture.training.diver_composites import NO_POSE, DiverComposer, DiverSettings
-from lightgesture.training.real_hands import Shown, draw_diver, skin_colour
-from lightgesture.training.surroundings import Scenery, darken, light_of_room, water_of_picture
+from lightgesture.training.pictures.composites import Background, CompositeSettings
+from lightgesture.training.pictures.cutouts import Cutout
+from lightgesture.training.pictures.diver_composites import NO_POSE, DiverComposer, DiverSettings
+from lightgesture.training.pictures.real_hands import Shown, draw_diver, skin_colour
+from lightgesture.training.pictures.surroundings import Scenery, darken, light_of_room, water_of_picture
 
 SIZE = (160, 120)
 BLUE, MAGENTA = (200, 30, 30), (200, 30, 200)

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.contours import ContourSettings, contour_length, contour_vectors
+from lightgesture.features.outline.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models.cnn import CnnClassifier
-from lightgesture.training.cnn import CnnTraining, in_integers
-from lightgesture.training.hand_samples import HandSamples
-from lightgesture.training.patch_kinds import PoolSettings
-from lightgesture.training.patch_pool import PatchPool
+from lightgesture.training.nets.cnn import CnnTraining, in_integers
+from lightgesture.training.nets.hand_samples import HandSamples
+from lightgesture.training.pool.patch_kinds import PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool
 
 pytest.importorskip("torch")
 
@@ -20,8 +20,8 @@ SIZE = 32
 
 @pytest.mark.parametrize("looks_at_the_outline", [False, True])
 def test_integers_answer_as_floating_point_does(looks_at_the_outline):
-    from lightgesture.training.architectures import hand_nodes
-    from lightgesture.training.hand_net import LearntNet, OutlineScale, make_net
+    from lightgesture.training.nets.architectures import hand_nodes
+    from lightgesture.training.nets.hand_net import LearntNet, OutlineScale, make_net
 
     random = np.random.default_rng(4)
     # Chequers of random colours: patches of noise all look alike to a net.

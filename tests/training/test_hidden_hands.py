@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.training.hidden_hands import HidingSettings, hide
+from lightgesture.training.pictures.hidden_hands import HidingSettings, hide
 
 BOX = (30, 20, 40, 60)
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.training.kept_sources import keeps_whole_sources, kept_out
-from lightgesture.training.samples import LabelledHand
+from lightgesture.training.pool.kept_sources import keeps_whole_sources, kept_out
+from lightgesture.training.pool.samples import LabelledHand
 
 PICTURE = np.zeros((4, 4, 3), np.uint8)
 

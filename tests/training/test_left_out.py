@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from lightgesture.datasets import fold_of
 from lightgesture.errors import InputError
-from lightgesture.training.left_out import CARD_KEY, LeftOut, left_out, read_left_out
+from lightgesture.training.datasets import fold_of
+from lightgesture.training.pool.left_out import CARD_KEY, LeftOut, left_out, read_left_out
 
 NAMES = [f"somebody/project {number}" for number in range(200)]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.network import Node
+from lightgesture.features.net.network import Node
 
 torch = pytest.importorskip("torch")
 
@@ -11,7 +11,7 @@ SETTINGS = {"steps": 6, "rate": 0.05, "warm_up": 2, "save_every": 2}
 
 
 def a_net():
-    from lightgesture.training.torch_network import TorchNetwork
+    from lightgesture.training.nets.torch_network import TorchNetwork
 
     torch.manual_seed(0)
     nodes = (
@@ -32,7 +32,7 @@ def squared(outputs, truth):
 
 
 def train(path, batch=brightness, said=None, seed=5, matrix_rate=0.0):
-    from lightgesture.training.net_training import LoopSettings, train_net
+    from lightgesture.training.nets.net_training import LoopSettings, train_net
 
     tell = (said if said is not None else []).append
     settings = LoopSettings(**SETTINGS, matrix_rate=matrix_rate)
@@ -70,7 +70,7 @@ def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path, matrix_r
     ("precision", "matrix_rate"), [("float32", 0.0), ("bfloat16", 0.0), ("float32", 0.02)]
 )
 def test_training_lowers_the_loss(tmp_path, precision, matrix_rate):
-    from lightgesture.training.net_training import LoopSettings, train_net
+    from lightgesture.training.nets.net_training import LoopSettings, train_net
 
     inputs, truth = brightness(np.random.default_rng(9))
     settings = LoopSettings(60, 0.02, matrix_rate, warm_up=5, precision=precision)
@@ -81,7 +81,7 @@ def test_training_lowers_the_loss(tmp_path, precision, matrix_rate):
 
 
 def test_generalised_overlap_of_known_boxes():
-    from lightgesture.training.net_training import giou
+    from lightgesture.training.nets.net_training import giou
 
     box = torch.tensor([[0.0, 0.0, 2.0, 2.0]])
     others = torch.tensor([[0.0, 0.0, 2.0, 2.0], [1.0, 0.0, 3.0, 2.0], [4.0, 0.0, 6.0, 2.0]])

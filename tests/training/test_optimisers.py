@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.features.network import Node
+from lightgesture.features.net.network import Node
 
 torch = pytest.importorskip("torch")
 
@@ -12,7 +12,7 @@ INNER = ("seen", "point", "whole")
 
 
 def a_net():
-    from lightgesture.training.torch_network import TorchNetwork
+    from lightgesture.training.nets.torch_network import TorchNetwork
 
     torch.manual_seed(3)
     nodes = (
@@ -28,7 +28,7 @@ def a_net():
 
 def stepped(net, rate, matrix_rate):
     """What one step without decay changes, by name."""
-    from lightgesture.training.optimisers import NetOptimiser
+    from lightgesture.training.nets.optimisers import NetOptimiser
 
     before = {name: value.detach().clone() for name, value in net.named_parameters()}
     optimiser = NetOptimiser(net, rate, matrix_rate, decay=0.0)
@@ -60,7 +60,7 @@ def test_without_a_rate_of_their_own_matrices_move_like_the_others():
 
 
 def test_a_net_in_another_order_of_memory_is_refused():
-    from lightgesture.training.optimisers import NetOptimiser
+    from lightgesture.training.nets.optimisers import NetOptimiser
 
     with pytest.raises(RuntimeError, match="view"):
         NetOptimiser(a_net().to(memory_format=torch.contiguous_format), 1e-3, 0.04, 0.0)

@@ -7,11 +7,11 @@ import pytest
 
 from lightgesture.features.patch import PatchSettings, cut_patch
 from lightgesture.features.standardise import channel_tables
-from lightgesture.training.hand_samples import HandSamples, HandSampling, standardised
-from lightgesture.training.negatives import Scene
-from lightgesture.training.patch_kinds import Originals, PoolSettings
-from lightgesture.training.patch_pool import PatchPool, make_pool, rows_without
-from lightgesture.training.samples import LabelledHand
+from lightgesture.training.nets.hand_samples import HandSamples, HandSampling, standardised
+from lightgesture.training.pool.negatives import Scene
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
+from lightgesture.training.pool.samples import LabelledHand
 
 SETTINGS = PoolSettings(copies=2, rounds=1, rendered=6, patch=PatchSettings(16, 1.1))
 

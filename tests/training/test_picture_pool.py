@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.composites import Background, CompositeSettings
-from lightgesture.training.cutouts import Cutout
-from lightgesture.training.picture_pool import Ingredients, compose_pool
+from lightgesture.training.pictures.composites import Background, CompositeSettings
+from lightgesture.training.pictures.cutouts import Cutout
+from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 
 COUNT = 12
 

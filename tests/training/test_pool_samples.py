@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lightgesture.features.patch import PatchSettings, cut_patch
-from lightgesture.training.negatives import Scene
-from lightgesture.training.patch_kinds import Originals, PoolSettings
-from lightgesture.training.patch_pool import PatchPool, make_pool
-from lightgesture.training.pool_samples import PoolSampling, pool_samples
-from lightgesture.training.samples import LabelledHand
+from lightgesture.training.pool.negatives import Scene
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool, make_pool
+from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
+from lightgesture.training.pool.samples import LabelledHand
 
 SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=4)
 

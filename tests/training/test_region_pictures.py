@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.datasets import fold_of
-from lightgesture.training.left_out import LeftOut, left_out
-from lightgesture.training.region_pictures import PictureSettings, read_material, without_hands
+from lightgesture.training.datasets import fold_of
+from lightgesture.training.pool.left_out import LeftOut, left_out
+from lightgesture.training.regions.region_pictures import PictureSettings, read_material, without_hands
 
 SETTINGS = PictureSettings(cutouts_per_source=1)
 LANDMARKS = ";".join(f"{40 + 8 * (i % 5)};{100 - 4 * i}" for i in range(21))

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.features.training import BoxedPicture
-from lightgesture.training.locator_samples import LocatorSamples, LocatorSampling, make_targets, warp
-from lightgesture.training.photometric import PhotometricSettings, photometric
-from lightgesture.training.refiner_samples import RefinerSamples, cut_turned, target_edges
+from lightgesture.training.nets.locator_samples import LocatorSamples, LocatorSampling, make_targets, warp
+from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, target_edges
+from lightgesture.training.pictures.photometric import PhotometricSettings, photometric
+from lightgesture.training.regions.trees import BoxedPicture
 
 
 def a_picture(boxes=((120, 80, 60, 80),)):
@@ -115,9 +115,9 @@ def test_without_any_change_the_light_stays_and_each_change_is_felt():
 
 def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
     pytest.importorskip("torch")
-    from lightgesture.training.hard_regions import hard_regions
-    from lightgesture.training.locator import train_locator
-    from lightgesture.training.refiner import train_refiner
+    from lightgesture.training.nets.locator import train_locator
+    from lightgesture.training.nets.refiner import train_refiner
+    from lightgesture.training.regions.hard_regions import hard_regions
 
     pictures, empty, said = [a_picture()], [a_picture(())], []
     locator = train_locator(

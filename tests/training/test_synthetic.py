@@ -4,8 +4,8 @@ import numpy as np
 
 from lightgesture.cli import main
 from lightgesture.synth.crops import CropSettings
-from lightgesture.training.augment import AugmentSettings
-from lightgesture.training.synthetic import SyntheticSettings, synthetic_hands
+from lightgesture.training.pictures.augment import AugmentSettings
+from lightgesture.training.pool.synthetic import SyntheticSettings, synthetic_hands
 
 
 def _samples(seed, count=12):

@@ -6,8 +6,8 @@ import time
 import numpy as np
 import pytest
 
-from lightgesture.training.hand_samples import HandSamples
-from lightgesture.training.patch_pool import PatchPool
+from lightgesture.training.nets.hand_samples import HandSamples
+from lightgesture.training.pool.patch_pool import PatchPool
 
 pytest.importorskip("torch")
 
@@ -34,8 +34,8 @@ class BreakingSamples(HandSamples):
 
 
 def test_an_interruption_ends_all_of_them_at_once(tmp_path):
-    from lightgesture.training.hand_net import NetSettings
-    from lightgesture.training.teachers import teach
+    from lightgesture.training.nets.hand_net import NetSettings
+    from lightgesture.training.nets.teachers import teach
 
     samples, ended = BreakingSamples(), threading.Event()
 

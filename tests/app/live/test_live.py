@@ -208,8 +208,8 @@ def test_an_instruction_over_the_network_and_by_mavlink():
     """The bundled clip, with a hold that forgives the pictures that a busy machine passes over."""
     from pymavlink.dialects.v20 import common
 
+    from lightgesture.actions.decode import SAMPLE
     from lightgesture.benchmarks.mjpeg_server import read_jpegs
-    from lightgesture.decoding import SAMPLE
 
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as station:
         station.bind(("127.0.0.1", 0))

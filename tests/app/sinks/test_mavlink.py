@@ -7,8 +7,8 @@ import time
 import pytest
 from pymavlink.dialects.v20 import common
 
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
-from lightgesture.settings import DecodeSettings
 from lightgesture.sinks import SinkError, make_sinks
 from lightgesture.sinks.mavlink import MavlinkSink, text_chunks
 from lightgesture.sinks.mavlink_map import COMMANDS, MavlinkMap, load_map

@@ -6,8 +6,8 @@ import socket
 
 import pytest
 
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
-from lightgesture.settings import DecodeSettings
 from lightgesture.sinks import RecordError, SinkError, make_sinks
 from lightgesture.sinks.registry import parse_address
 from lightgesture.sinks.udp import UdpSink

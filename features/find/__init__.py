@@ -1,0 +1,1 @@
+"""Where the hands of a frame may be: learned and classical choice."""

@@ -1,0 +1,116 @@
+"""The classical choice: regions of many thresholds, scored by trees on what the picture looks like there.
+
+No net: channels of the picture averaged over a grid, the outline's numbers and its nearness to the bank of hand
+contours. Selected by `--selector classical`, and the baseline of every table.
+"""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.colour import ColourMap
+from lightgesture.features.find import cells
+from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
+from lightgesture.features.find.pairs import Candidate, score_pairs
+from lightgesture.features.find.proposals import Proposals, propose
+from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
+from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
+from lightgesture.features.find.trees import evaluate
+from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
+from lightgesture.features.outline.wrist import fill_contour
+from lightgesture.features.types import Box, Candidates, HandRegion
+
+Float = NDArray[np.float32]
+
+
+COLUMNS = cells.COLUMNS + BANK_NUMBERS
+"""Numbers of one region."""
+
+
+def describe_regions(colour: ColourMap, proposals: Proposals, bank: Bank) -> Float:
+    """float32 (n, COLUMNS): what the picture looks like there, then how near the outline is to the bank's hands, and
+    how much nearer than to other things."""
+    if not len(proposals):
+        return np.zeros((0, COLUMNS), np.float32)
+    distances = bank_distances(proposals.contours, bank)
+    hands = np.delete(distances, bank.classes.index(OTHER), axis=1).min(axis=1)
+    numbers = cells.describe(colour, proposals), hands, hand_proximity(distances, bank)
+    return np.column_stack(numbers).astype(np.float32)
+
+
+def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float) -> Candidate:
+    """The numbers of one proposal that its pairs need."""
+    x, y, width, height = (int(value) for value in proposals.boxes[index])
+    mask = fill_contour(proposals.contours[index], (x, y, width, height))
+    means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
+    return Candidate(
+        box=proposals.boxes[index].astype(np.float32),
+        score=score,
+        strength=float(proposals.levels[index]),
+        colour=np.array(means, np.float32) / np.float32(255.0),
+    )
+
+
+def scored_candidates(
+    colour: ColourMap, proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings
+) -> tuple[list[int], list[Candidate]]:
+    """Numbers of the proposals that go on to pairing, and what their pairs need."""
+    kept = best_distinct(proposals.boxes, scores, settings)
+    return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
+
+
+def _alternatives(
+    proposals: Proposals, scores: NDArray[np.float32], kept: Sequence[int], settings: SelectorSettings
+) -> list[list[int]]:
+    """For each kept proposal the best of the others that overlap it most among the kept."""
+    if not kept:
+        return []
+    overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
+    nearest = overlap.argmax(axis=1)
+    order = np.argsort(-scores, kind="stable")
+    near_enough = overlap.max(axis=1) >= settings.alternative_iou
+    return [
+        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][
+            : settings.alternatives
+        ]
+        for place, index in enumerate(kept)
+    ]
+
+
+def _region(
+    colour: ColourMap, proposals: Proposals, index: int, score: float, extents: Sequence[int]
+) -> HandRegion:
+    """A proposal in source pixels."""
+
+    def box_of(number: int) -> Box:
+        x, y, width, height = (int(value) for value in proposals.boxes[number])
+        return scale_box((x, y, width, height), colour.scale, colour.source_size)
+
+    contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
+    confidence = float(np.clip(score, 0.0, 1.0))
+    return HandRegion(box_of(index), contour, None, confidence, tuple(box_of(number) for number in extents))
+
+
+class ClassicalSelector:
+    """Colour map -> candidates with scores, by trees on regions of the skin map."""
+
+    def __init__(self, parts: ClassicalParts, settings: SelectorSettings = CLASSICAL) -> None:
+        self._parts, self._settings = parts, settings
+
+    def process(self, colour: ColourMap) -> Candidates:
+        """Score the regions of one frame. A frame without contrast gives no candidates."""
+        proposals = propose(colour)
+        if not len(proposals):
+            return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
+        scores = evaluate(self._parts.regions, describe_regions(colour, proposals, self._parts.bank))
+        kept, items = scored_candidates(colour, proposals, scores, self._settings)
+        height, width = colour.picture.shape[:2]
+        together = score_pairs(self._parts.pairs, items, (width, height), None, self._settings.apart_iou)
+        others = _alternatives(proposals, scores, kept, self._settings)
+        regions = tuple(
+            _region(colour, proposals, index, float(scores[index]), extents)
+            for index, extents in zip(kept, others, strict=True)
+        )
+        return Candidates(regions, together, colour.source_size)

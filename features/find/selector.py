@@ -1,0 +1,134 @@
+"""Choosing the hands of a frame: candidates by either selector, then a pair, one hand, or none.
+
+Two candidates that look like the hands of one person are believed at a lower score than one alone: a red
+box on a table looks like a hand, but seldom has a partner of its size at its height.
+"""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find.classical import ClassicalSelector
+from lightgesture.features.find.learned import LearnedSelector
+from lightgesture.features.find.selector_file import load_classical, load_learned
+from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
+from lightgesture.features.geometry import mirror_box
+from lightgesture.features.image import as_bgr8
+from lightgesture.features.outline.regions import outline_in
+from lightgesture.features.types import Box, Candidates, HandRegion, Image, Side
+
+SelectorName = Literal["learned", "classical"]
+SELECTORS: tuple[SelectorName, ...] = ("learned", "classical")
+
+
+class RegionStage:
+    """Colour map -> candidates with scores."""
+
+    def __init__(
+        self,
+        selector: SelectorName = "learned",
+        file: str | os.PathLike[str] | None = None,
+        settings: SelectorSettings | None = None,
+    ) -> None:
+        """selector: "learned" or "classical". file: of `lightgesture train regions`, None for the bundled one.
+
+        Raises SelectorError, or ValueError for another selector.
+        """
+        if selector not in SELECTORS:
+            raise ValueError(f"selector {selector!r}: must be learned or classical")
+        self.settings = settings or (LEARNED if selector == "learned" else CLASSICAL)
+        self._source: LearnedSelector | ClassicalSelector
+        if selector == "learned":
+            self._source = LearnedSelector(load_learned(file), self.settings)
+        else:
+            self._source = ClassicalSelector(load_classical(file), self.settings)
+
+    def process(self, colour: ColourMap) -> Candidates:
+        """Search one frame. A frame without contrast gives no candidates."""
+        return self._source.process(colour)
+
+    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+        """Candidates at predicted boxes alone, source pixels; None where the selector cannot but search."""
+        if isinstance(self._source, LearnedSelector) and boxes:
+            return self._source.follow(colour, boxes)
+        return None
+
+
+def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | None:
+    """The two candidates that go together best, and how well; None without any."""
+    if pairs.size == 0 or pairs.max() <= 0.0:
+        return None
+    first, second = np.unravel_index(int(pairs.argmax()), pairs.shape)
+    return (int(first), int(second)), float(pairs[first, second])
+
+
+def side_of_axis(box: Box, axis: float) -> Side:
+    """The side of a hand by where it is of the body's axis, x in pixels of an unmirrored picture."""
+    return "right" if box[0] + box[2] / 2 < axis else "left"
+
+
+def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegion]:
+    """The hands of a single picture, by the diver's right first: a pair, one hand, or none."""
+    found = best_pair(candidates.pairs)
+    if found is not None and found[1] >= settings.pair_score:
+        two = sorted(
+            (candidates.regions[i] for i in found[0]), key=lambda region: region.box[0] + region.box[2] / 2
+        )
+        sides: tuple[Side, Side] = ("right", "left")
+        return [
+            replace(region, side=side, confidence=max(region.confidence, found[1]))
+            for region, side in zip(two, sides, strict=True)
+        ]
+    if candidates.regions and candidates.regions[0].confidence >= settings.single_score:
+        one = candidates.regions[0]
+        axis = candidates.source_size[0] / 2 if candidates.axis is None else candidates.axis
+        side = side_of_axis(one.box, axis)
+        return [replace(one, side=side, confidence=one.confidence * settings.alone_confidence)]
+    return []
+
+
+def find_hands(
+    image: Image, *, mirrored: bool = False, selector: SelectorName = "learned"
+) -> list[HandRegion]:
+    """The hands of one picture, without memory.
+
+    image: uint8 (height, width, 3), BGR. mirrored: the picture is a selfie camera's; it is searched
+    as it would look unmirrored, so the sides are the diver's own, and the boxes are reported in the
+    given pixels. Raises SelectorError where the bundled data file is damaged, ValueError for what is no picture.
+    """
+    stage = _stage(selector)
+    picture = as_bgr8(image)
+    upright = np.ascontiguousarray(picture[:, ::-1]) if mirrored else picture
+    colour = ColourStage().process(upright)
+    hands = [outlined(colour, hand) for hand in choose(stage.process(colour), stage.settings)]
+    return [mirror_region(hand, picture.shape[1]) for hand in hands] if mirrored else hands
+
+
+@lru_cache(maxsize=len(SELECTORS))
+def _stage(selector: SelectorName) -> RegionStage:
+    """Read once, because a caller asks for picture after picture."""
+    return RegionStage(selector)
+
+
+def outlined(colour: ColourMap, region: HandRegion) -> HandRegion:
+    """The region with its outline, where it has none yet."""
+    if len(region.contour):
+        return region
+    return replace(region, contour=outline_in(colour, region.box))
+
+
+def mirror_region(region: HandRegion, width: int) -> HandRegion:
+    """The region in the picture flipped left to right; its side stays."""
+    contour = region.contour * np.array([-1, 1]) + np.array([width - 1, 0])
+    return replace(
+        region,
+        box=mirror_box(region.box, width),
+        contour=contour.astype(np.int32),
+        alternatives=tuple(mirror_box(box, width) for box in region.alternatives),
+    )

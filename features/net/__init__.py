@@ -1,0 +1,1 @@
+"""Small int8 nets: their layout, files and run-times."""

@@ -1,0 +1,199 @@
+"""The outline of the hand inside its patch, and the contour numbers of the paper's region selection.
+
+The outline is found by colour, without a model of skin: Fisher's linear discriminant ("The Use of Multiple
+Measurements in Taxonomic Problems", 1936) of the pixels in the middle of the patch against those round it is the
+direction of colour in which this hand differs from this room or water; Otsu's threshold cuts along it.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.outline.hu import HU_COUNT, hu_moments, log_signed
+from lightgesture.features.outline.shape import convex_hull, defect_depths
+
+Float = NDArray[np.float32]
+Mask = NDArray[np.uint8]
+Contour = NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class ContourSettings:
+    """How the outline is found and measured.
+
+    size: side in pixels to which a patch is reduced first, 16 to 64.
+    middle_width, middle_height: half axes of the ellipse that is taken for hand, shares of half the side.
+    rim: width of the border that is taken for background, a share of the side; without the lower quarter,
+        where the wrist leaves the patch.
+    evenness: added to the scatter of the square-root colours (0 to 1), so that a flat patch divides by something.
+    prior: weight of a bump in the middle against the colour difference, both in standard deviations.
+    deep: smallest depth of a convexity defect that counts as the gap between two fingers, a share of the side.
+    directions: of the radial signature.
+    """
+
+    size: int = 32
+    middle_width: float = 0.45
+    middle_height: float = 0.6
+    rim: float = 0.1
+    evenness: float = 1e-3
+    prior: float = 0.4
+    deep: float = 0.08
+    directions: int = 24
+
+
+DEFECTS = 4
+"""Depths of convexity defects in the vector: five fingers have four gaps."""
+
+SHAPE_NUMBERS = 6
+"""Area, solidity, extent, aspect, circularity, number of deep defects."""
+
+
+def contour_length(settings: ContourSettings | None = None) -> int:
+    """Numbers that one patch gives."""
+    settings = settings or ContourSettings()
+    return SHAPE_NUMBERS + DEFECTS + HU_COUNT + settings.directions
+
+
+def contour_vectors(patches: NDArray[np.uint8], settings: ContourSettings | None = None) -> Float:
+    """Contour numbers of patches, uint8 (n, size, size, 3), as float32 (n, `contour_length`)."""
+    settings = settings or ContourSettings()
+    vectors = np.zeros((len(patches), contour_length(settings)), np.float32)
+    for vector, patch in zip(vectors, patches, strict=True):
+        contour = outline(segment(patch, settings))
+        if contour is not None:
+            vector[:] = contour_numbers(contour, settings)
+    return vectors
+
+
+def segment(patch: NDArray[np.uint8], settings: ContourSettings | None = None) -> Mask:
+    """Mask of the hand, uint8 (settings.size, settings.size), 255 on one connected region or nowhere."""
+    settings = settings or ContourSettings()
+    small = cv2.resize(patch, (settings.size, settings.size), interpolation=cv2.INTER_AREA)
+    levels = _hand_likeness(np.asarray(small, np.uint8), settings)
+    binary = np.asarray(cv2.threshold(levels, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)[1], np.uint8)
+    labels = np.asarray(cv2.connectedComponents(binary)[1])
+    in_the_middle = np.bincount(labels.reshape(-1)[_regions(settings).middle], minlength=2)
+    in_the_middle[0] = 0
+    chosen = int(in_the_middle.argmax())
+    if not in_the_middle[chosen]:
+        return np.zeros_like(binary)
+    return np.asarray(cv2.inRange(labels, chosen, chosen), np.uint8)
+
+
+def outline(mask: Mask) -> Contour | None:
+    """Outer outline of the largest region of a mask, int32 (n, 2); None without one that has an area."""
+    contours = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
+    largest = max(contours, key=cv2.contourArea, default=None)
+    if largest is None or cv2.contourArea(largest) <= 0.0:
+        return None
+    return np.asarray(largest, np.int32).reshape(-1, 2)
+
+
+def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -> Float:
+    """Numbers of one outline, int32 (n, 2) in pixels of a picture `settings.size` wide, as float32.
+
+    In order: area (share of the patch), solidity (area over the hull's), extent (area over the box's), aspect
+    (width over height), circularity (4 pi area / perimeter²), number of deep convexity defects; the four deepest
+    defects as shares of the side; the log-signed Hu moments over 10; the radial signature.
+    """
+    settings = settings or ContourSettings()
+    area = max(float(cv2.contourArea(contour)), 1.0)
+    hull = convex_hull(contour)
+    hull_area = max(float(cv2.contourArea(hull)), area)
+    perimeter = max(float(cv2.arcLength(contour, True)), 1.0)
+    _, _, width, height = cv2.boundingRect(contour)
+    # Outlines in a triangle count as whole: the shipped classifiers learnt from numbers in which they do.
+    depths = defect_depths(contour) / settings.size if len(hull) > 3 else np.zeros(0)
+    shape = [
+        area / settings.size**2,
+        area / hull_area,
+        area / (width * height),
+        width / height,
+        4.0 * np.pi * area / perimeter**2,
+        float((depths > settings.deep).sum()) / DEFECTS,
+    ]
+    deepest = np.zeros(DEFECTS)
+    found = np.sort(depths)[::-1][:DEFECTS]
+    deepest[: len(found)] = found
+    moments = log_signed(hu_moments(contour)) / 10.0
+    return np.concatenate([shape, deepest, moments, radial_signature(contour, settings.directions)]).astype(
+        np.float32
+    )
+
+
+def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:
+    """Farthest reach of the outline from its centroid in each direction, float64 (directions,).
+
+    In units of the square root of the area; direction 0 is along x, the next turn towards y (down). Directions
+    without a point take the smaller of their neighbours, else 0.
+    """
+    moments = cv2.moments(contour.reshape(-1, 1, 2))
+    area = max(moments["m00"], 1.0)
+    centre = np.array([moments["m10"] / area, moments["m01"] / area])
+    offset = contour - centre
+    sector = np.floor(np.arctan2(offset[:, 1], offset[:, 0]) * (directions / (2 * np.pi)) + 0.5).astype(int)
+    signature = np.zeros(directions)
+    np.maximum.at(signature, sector % directions, np.hypot(offset[:, 0], offset[:, 1]) / np.sqrt(area))
+    around = np.concatenate([signature[-1:], signature, signature[:1]])
+    return np.where(signature > 0, signature, np.minimum(around[:-2], around[2:]))
+
+
+def _hand_likeness(patch: NDArray[np.uint8], settings: ContourSettings) -> NDArray[np.uint8]:
+    """The patch along the colour direction in which its middle differs from its rim, stretched to 0 to 255."""
+    regions = _regions(settings)
+    colours = np.asarray(cv2.LUT(patch, _square_roots()), np.float64).reshape(-1, 3)
+    centres = regions.shares @ colours
+    # The scatter round both centres: the mean products less the products of the means.
+    scatter = (colours * regions.both).T @ colours
+    scatter -= centres.T @ centres
+    scatter += regions.evenness
+    difference = (centres[0] - centres[1])[:, None]
+    direction = np.asarray(cv2.solve(scatter, difference, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)
+    values = colours @ direction
+    mean, deviation = (float(number[0, 0]) for number in cv2.meanStdDev(values))
+    values = (values - mean) / deviation if deviation > 1e-9 else np.zeros_like(values)
+    values = values.reshape(patch.shape[:2]) + regions.bump
+    low, high = cv2.minMaxLoc(values)[:2]
+    return np.asarray((values - low) * (255.0 / (high - low)), np.uint8)
+
+
+@lru_cache(maxsize=1)
+def _square_roots() -> NDArray[np.float64]:
+    return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float64)
+
+
+class _Regions(NamedTuple):
+    """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (2, p), of each pixel in
+    the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`.
+    evenness: (3, 3), what is added to the scatter."""
+
+    middle: NDArray[np.intp]
+    shares: NDArray[np.float64]
+    both: NDArray[np.float64]
+    bump: NDArray[np.float64]
+    evenness: NDArray[np.float64]
+
+
+@lru_cache(maxsize=4)
+def _regions(settings: ContourSettings) -> _Regions:
+    size = settings.size
+    axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
+    across, down = axis[None, :] / settings.middle_width, axis[:, None] / settings.middle_height
+    middle = across**2 + down**2 < 1.0
+    near = max(1, round(settings.rim * size))
+    rim = np.zeros((size, size), bool)
+    rim[:near] = True
+    rim[: size * 3 // 4, :near] = rim[: size * 3 // 4, -near:] = True
+    bump = np.exp(-(axis[None, :] ** 2) - axis[:, None] ** 2)
+    shares = np.stack([region.reshape(-1) / region.sum() for region in (middle, rim)])
+    return _Regions(
+        np.flatnonzero(middle),
+        shares,
+        shares.sum(axis=0)[:, None],
+        settings.prior * (bump - bump.mean()) / bump.std(),
+        settings.evenness * np.eye(3),
+    )

@@ -1,0 +1,146 @@
+"""What `live` does: the parts put together, run until the end, and taken apart in order."""
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+
+from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.config.settings import DecodeSettings
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus
+from lightgesture.live.listener import Listener
+from lightgesture.live.loop import LiveLoop
+from lightgesture.live.mailbox import Mailbox
+from lightgesture.live.reader import Reader, Report
+from lightgesture.live.settings import LiveSettings
+from lightgesture.live.signals import Stopping, stop_signals
+from lightgesture.results import JsonPrinter, TextPrinter
+from lightgesture.sinks import Outbox, Sink, make_sinks
+from lightgesture.sinks.printer import PrinterSink, print_unbuffered
+from lightgesture.sources import LiveSource, SourceOptions, live_source
+
+DEBUG_STEM = "live"
+"""Folder of the pictures of the stages, for an address makes no name."""
+
+
+def run_live(
+    source_name: str,
+    settings: DecodeSettings,
+    listeners: Sequence[Listener] = (),
+    live_settings: LiveSettings | None = None,
+) -> ExitStatus:
+    """Decode a stream until it ends for good, nobody takes the records any more, or a signal asks for the end.
+
+    OK, also after SIGTERM, for a service that is asked to stop has not failed; INTERRUPTED after Ctrl-C; SOME_FAILED
+    if the reader of standard output went away and nobody else takes the records, or not one picture could be decoded.
+    UsageError: the source, an option, the model or the grammar is wrong.
+    """
+    live_settings = live_settings or LiveSettings()
+    source = live_source(source_name, SourceOptions(size=settings.width_height))
+    sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
+    debug = make_debug_pictures(settings, DEBUG_STEM)
+    report = _make_report()
+    clock = _make_clock()
+    mailbox = Mailbox()
+    pipeline = open_pipeline(_for_pipeline(settings, live_settings), source.name, debug)
+    with ExitStack() as stack:
+        listeners = [*listeners, *_serving(settings, stack, report)]
+        stopping = stack.enter_context(stop_signals())
+        outboxes = [stack.enter_context(_sending(sink, report)) for sink in sinks]
+        stack.enter_context(_reading(source, mailbox, clock, report, live_settings))
+        loop = LiveLoop(
+            source.name,
+            mailbox,
+            pipeline,
+            outboxes,
+            clock=clock,
+            report=report,
+            listeners=listeners,
+            frames=settings.frames,
+            debug=debug,
+            settings=live_settings,
+        )
+        loop.run(stopping)
+    if not settings.quiet:
+        say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
+    return _status(loop, outboxes, stopping)
+
+
+def _for_pipeline(settings: DecodeSettings, live_settings: LiveSettings) -> DecodeSettings:
+    """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
+    a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
+    changes: dict[str, object] = {"frames": True}
+    if settings.hold is None and settings.hold_seconds is None and settings.grammar is None:
+        changes["hold_seconds"] = live_settings.hold_s
+    return settings.model_copy(update=changes)
+
+
+def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list[Listener]:
+    """The page, where the user wants one, served until the stack ends."""
+    if settings.web is None:
+        return []
+    from lightgesture.web import WebListener
+
+    page = stack.enter_context(WebListener(settings.web, settings.web_host))
+    if not settings.quiet:
+        report(f"the page is at {page.address}")
+    return [page]
+
+
+def _status(loop: LiveLoop, outboxes: Sequence[Outbox], stopping: Stopping) -> ExitStatus:
+    if stopping.is_interrupted:
+        return ExitStatus.INTERRUPTED
+    is_unheard = all(outbox.is_gone for outbox in outboxes)
+    is_failed = is_unheard or (not stopping.is_set() and not loop.processed)
+    return ExitStatus.SOME_FAILED if is_failed else ExitStatus.OK
+
+
+def _make_printer(settings: DecodeSettings, name: str) -> Sink:
+    if settings.as_json:
+        return PrinterSink(JsonPrinter(print_unbuffered, sys.stdout.encoding or "utf-8"))
+    return PrinterSink(TextPrinter(print_unbuffered, name))
+
+
+def _make_clock() -> Callable[[], float]:
+    """Seconds since now, to the microsecond."""
+    start_s = time.monotonic()
+    return lambda: round(time.monotonic() - start_s, 6)
+
+
+def _make_report() -> Report:
+    """Messages on standard error, one at a time, whichever thread they are from."""
+    lock = threading.Lock()
+
+    def report(text: str) -> None:
+        with lock:
+            say(text)
+
+    return report
+
+
+@contextmanager
+def _sending(sink: Sink, report: Report) -> Iterator[Outbox]:
+    outbox = Outbox(sink, report)
+    outbox.start()
+    try:
+        yield outbox
+    finally:
+        outbox.stop()
+
+
+@contextmanager
+def _reading(
+    source: LiveSource,
+    mailbox: Mailbox,
+    clock: Callable[[], float],
+    report: Report,
+    settings: LiveSettings,
+) -> Iterator[Reader]:
+    reader = Reader(source, mailbox, clock, report, settings)
+    reader.start()
+    try:
+        yield reader
+    finally:
+        reader.stop()

@@ -1,0 +1,126 @@
+"""Options from the command line and from `--config`: what `settings.DecodeSettings` declares feeds both, and the help.
+
+Precedence: command line, then configuration file, then the grammar's own `[dwell]` (for the hold), then the model's
+defaults.
+"""
+
+import argparse
+import difflib
+import os
+import tomllib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
+
+from lightgesture.config.settings import DecodeSettings
+from lightgesture.errors import UsageError
+
+_PATHS = ("grammar", "profile", "out", "debug_dir", "model", "mavlink_map")
+_HOLDS = ("hold", "hold_seconds")
+_BUILT_IN_MODELS = ("cnn", "svm")
+
+
+def add_options(parser: argparse.ArgumentParser, command: str) -> None:
+    """Declare `--config` and the options that `command` has; what is not given stays out of the result."""
+    for name, field in DecodeSettings.model_fields.items():
+        extra: Any = field.json_schema_extra
+        if extra["only"] and command not in extra["only"]:
+            continue
+        key = field.alias or name
+        kind: dict[str, Any] = {"metavar": extra["metavar"]}
+        if field.annotation is bool:
+            kind = {"action": argparse.BooleanOptionalAction}
+        elif field.annotation == list[str]:
+            kind["action"] = "append"
+        parser.add_argument(
+            _flag(key), dest=key, default=argparse.SUPPRESS, help=_help(field, extra["metavar"]), **kind
+        )
+    parser.add_argument(
+        "--config", metavar="FILE", help="TOML file with any of these options; the command line goes first"
+    )
+
+
+def load_settings(args: argparse.Namespace) -> DecodeSettings:
+    """Settings from the parsed options of `add_options` and from the file that `--config` names.
+
+    UsageError: the file cannot be read, or an option or a key is wrong.
+    """
+    known = {field.alias or name for name, field in DecodeSettings.model_fields.items()}
+    given = {key: value for key, value in vars(args).items() if key in known}
+    config = {} if args.config is None else read_config(args.config)
+    _check_holds(given, "", _flag)
+    for key, other in zip(_HOLDS, reversed(_HOLDS), strict=True):
+        if key in given:
+            config.pop(other, None)
+    try:
+        return DecodeSettings.model_validate({**config, **given})
+    except ValidationError as error:
+        raise UsageError(_explain(error, _flag)) from None
+
+
+def read_config(path: str) -> dict[str, Any]:
+    """The checked content of a configuration file.
+
+    Keys are the options' names, with `_` or `-`; a relative path in it starts at the file's own folder.
+    UsageError: it cannot be read, is no TOML, or has a wrong key or value.
+    """
+    content = {key.replace("-", "_"): value for key, value in _read_toml(path).items()}
+    try:
+        DecodeSettings.model_validate(content, strict=True)
+    except ValidationError as error:
+        raise UsageError(f"{path}: {_explain(error, str)}") from None
+    _check_holds(content, f"{path}: ", str)
+    folder = os.path.dirname(path)
+    for key in _PATHS:
+        if key in content and content[key] not in _BUILT_IN_MODELS:
+            content[key] = os.path.join(folder, content[key])
+    return content
+
+
+def _read_toml(path: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read ({error.strerror}); name a TOML file") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: is no UTF-8 text; save the configuration as UTF-8") from None
+    except (ValueError, RecursionError) as error:  # TOML syntax is a ValueError too
+        reason = str(error) or "too deeply nested"
+        raise UsageError(f"{path}: is no valid TOML ({reason}); write lines such as hold = 10") from None
+
+
+def _check_holds(given: Mapping[str, Any], place: str, show: Callable[[str], str]) -> None:
+    if all(key in given for key in _HOLDS):
+        raise UsageError(f"{place}{' and '.join(map(show, _HOLDS))}: exclude each other; give one of them")
+
+
+def _flag(key: str) -> str:
+    return "--" + key.replace("_", "-")
+
+
+def _help(field: FieldInfo, metavar: str | None) -> str:
+    text = (field.description or "").replace("%", "%%")
+    is_told = metavar is None or field.default in (None, []) or "(default" in text
+    return text if is_told else f"{text} (default: {field.default})"
+
+
+def _explain(error: ValidationError, show: Any) -> str:
+    return "; ".join(_explain_one(detail, show) for detail in error.errors(include_url=False))
+
+
+def _explain_one(detail: ErrorDetails, show: Any) -> str:
+    key = str(detail["loc"][0])
+    if detail["type"] == "extra_forbidden":
+        return f"{key}: unknown key; {_suggest(key)}"
+    shown = repr(detail["input"])[:60]
+    return f"{show(key)}: {detail['msg'].replace('Input should', 'should')}, not {shown}; change it"
+
+
+def _suggest(key: str) -> str:
+    known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
+    close = difflib.get_close_matches(key, known, n=1)
+    return f"did you mean '{close[0]}'?" if close else "known are " + ", ".join(known)

@@ -1,0 +1,1 @@
+"""Grammar files in words and pictures."""

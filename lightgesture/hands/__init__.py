@@ -1,0 +1,1 @@
+"""The hand reader: find, track, read."""

@@ -1,0 +1,159 @@
+"""From probabilities to tokens, with refusal: rather no token than a wrong one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.types import Box, Image, Side
+from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
+from lightgesture.models import NONE, Classifier
+from lightgesture.records import Hand
+
+
+@dataclass(frozen=True, slots=True)
+class ReadingSettings:
+    """When a hand gets a token.
+
+    token_probability: least calibrated probability of the best token, 0 to 1. Higher refuses more and reads fewer
+        wrong; what stays below is `low_confidence`.
+    edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
+        classifier is not sure.
+    covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
+    edge_factor, crowded_factor: factors on the confidence of a hand that is cut by the edge, and of one that is
+        crowded, 0.7 to 1; the smaller where it is both. What is read there must be clearer; where `token_probability`
+        is above a factor, nothing is.
+    """
+
+    token_probability: float = 0.7
+    edge_share: float = 0.02
+    covered_share: float = 0.25
+    edge_factor: float = 0.72
+    crowded_factor: float = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """A hand to be read.
+
+    boxes: its extents, source pixels, the likeliest first; at least one. track: number, None in single pictures.
+    certainty: factor on the confidence, 1 where the side is known. is_crowded: before a face, or another hand is in its
+    box.
+    """
+
+    side: Side
+    boxes: tuple[Box, ...]
+    track: int | None
+    certainty: float = 1.0
+    is_crowded: bool = False
+
+
+def is_crowded(
+    box: Box, others: Sequence[Box], face: tuple[float, float] | None, settings: ReadingSettings | None = None
+) -> bool:
+    """Whether something skin-coloured is behind or before a hand: the middle of the face lies in its box, or
+    another hand covers a share of it."""
+    settings = settings or ReadingSettings()
+    x, y, width, height = box
+    if face is not None and x <= face[0] < x + width and y <= face[1] < y + height:
+        return True
+    for left, top, wide, tall in others:
+        across = min(x + width, left + wide) - max(x, left)
+        down = min(y + height, top + tall) - max(y, top)
+        if min(across, down) > 0 and across * down > settings.covered_share * width * height:
+            return True
+    return False
+
+
+def _touches_edge(box: Box, size: tuple[int, int], share: float) -> bool:
+    x, y, width, height = box
+    margin_x, margin_y = share * width, share * height
+    return (
+        x <= margin_x or y <= margin_y or x + width >= size[0] - margin_x or y + height >= size[1] - margin_y
+    )
+
+
+def read_token(
+    probabilities: NDArray[np.float32],
+    classes: Sequence[str],
+    at_edge: bool,
+    crowded: bool,
+    settings: ReadingSettings,
+) -> tuple[str | None, float, str | None]:
+    """Token, confidence and reason of one hand from its row of probabilities (classes,).
+
+    The token is None where `none` is most likely ("unknown_shape") or no token likely enough
+    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge and
+    before others the confidence of what is read is lowered, and must still suffice.
+    """
+    best = int(np.argmax(probabilities))
+    confidence = float(probabilities[best])
+    confidence *= min(
+        settings.edge_factor if at_edge else 1.0,
+        settings.crowded_factor if crowded else 1.0,
+    )
+    if classes[best] == NONE:
+        return None, confidence, "unknown_shape"
+    if confidence < settings.token_probability:
+        return None, confidence, "partial" if at_edge else "occluded" if crowded else "low_confidence"
+    return classes[best], confidence, None
+
+
+def clearest(rows: NDArray[np.float32], classes: Sequence[str]) -> int:
+    """The row (extents, classes) in which some token, not `none`, is most likely."""
+    tokens = [column for column, name in enumerate(classes) if name != NONE]
+    return int(rows[:, tokens].max(axis=1).argmax())
+
+
+class ReadingStage:
+    """Sightings of a frame -> hands with tokens."""
+
+    def __init__(self, classifier: Classifier, settings: ReadingSettings | None = None) -> None:
+        self._classifier = classifier
+        self._settings = settings or ReadingSettings()
+
+    def process(
+        self,
+        image: Image,
+        sightings: Sequence[Sighting],
+        memory: ReadingMemory | None = None,
+        time_s: float = 0.0,
+    ) -> tuple[Hand, ...]:
+        """Read every sighting in one BGR frame, the diver's right hand first.
+
+        memory: of the stream, whose frame at `time_s` seconds this is; None for a picture on its own.
+        """
+        memory = memory or NO_MEMORY
+        memory.keep_only([item.track for item in sightings])
+        if not sightings:
+            return ()
+        boxes = [box for item in sightings for box in item.boxes]
+        sides = [item.side for item in sightings for _ in item.boxes]
+        rows = self._classifier.probabilities(image, boxes, sides)
+        hands = []
+        first = 0
+        for item in sightings:
+            own = rows[first : first + len(item.boxes)]
+            first += len(item.boxes)
+            hands.append(self._read(image, item, own, memory, time_s))
+        return tuple(hands)
+
+    def _read(
+        self, image: Image, item: Sighting, rows: NDArray[np.float32], memory: ReadingMemory, time_s: float
+    ) -> Hand:
+        """The hand in the extent in which it reads most clearly."""
+        classes = self._classifier.classes
+        place = clearest(rows, classes)
+        steady = memory.steady(item.track, rows[place], time_s)
+        box = item.boxes[place]
+        at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
+        token, confidence, reason = read_token(steady, classes, at_edge, item.is_crowded, self._settings)
+        return Hand(
+            side=item.side,
+            token=token,
+            confidence=round(confidence * item.certainty, 4),
+            box=box,
+            track=item.track,
+            reason=reason,
+        )

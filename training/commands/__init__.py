@@ -1,0 +1,1 @@
+"""`lightgesture train`."""

@@ -1,0 +1,113 @@
+"""`lightgesture train cnn`: the small net that reads hand patches."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.training.commands.hand_data import add_data_arguments, count
+from lightgesture.training.commands.train import model_path
+
+if TYPE_CHECKING:
+    from lightgesture.training.nets.cnn import CnnTraining
+
+SIZES = ("small", "medium", "large")
+PRECISIONS = ("float32", "bfloat16")
+"""Those of `training.net_training`, which is not imported here because it needs torch."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_data_arguments(parser)
+    parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
+    parser.add_argument(
+        "--size",
+        choices=SIZES,
+        default="medium",
+        help="of the net; a larger one reads better and takes longer",
+    )
+    parser.add_argument(
+        "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
+    )
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 60000)")
+    parser.add_argument(
+        "--teachers",
+        type=count,
+        metavar="N",
+        help="larger nets that are learnt from; 0: learn from the labels alone (default: 2)",
+    )
+    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 4000)")
+    parser.add_argument(
+        "--precision",
+        choices=PRECISIONS,
+        default="float32",
+        help="of the training; bfloat16 takes two thirds of the time on processors with instructions for it "
+        "(avx512_bf16, amx) and several times as long on others",
+    )
+    parser.add_argument(
+        "--copies",
+        type=count,
+        metavar="N",
+        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
+    )
+    parser.add_argument(
+        "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 12000)"
+    )
+    parser.add_argument(
+        "--jobs",
+        type=count,
+        default=1,
+        metavar="N",
+        help="processes that draw, and larger nets that learn at a time (default: 1); changes nothing else",
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train, write the model and its card, and tell the scores of sources held out."""
+    from lightgesture.models import ModelError
+    from lightgesture.training.card import summary
+    from lightgesture.training.nets.cnn import train_cnn_to_file
+
+    out = model_path(args.out)
+    progress = (lambda _: None) if args.quiet else say
+    try:
+        card = train_cnn_to_file(_training(args), out, progress)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if not args.quiet:
+        for line in summary(card, out):
+            say(line)
+    return ExitStatus.OK
+
+
+def _training(args: argparse.Namespace) -> "CnnTraining":
+    from lightgesture.training.nets.cnn import CnnTraining
+
+    if args.data is None:
+        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    for name in ("steps", "teacher_steps", "jobs", "copies"):
+        if getattr(args, name) == 0:
+            raise UsageError(f"--{name.replace('_', '-')} is 0; it must be 1 or more")
+    training = CnnTraining(
+        data=Path(args.data),
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        without=tuple(args.without),
+        seed=args.seed,
+        jobs=args.jobs,
+        size=args.size,
+        contours=args.outline,
+        precision=args.precision,
+    )
+    for name in ("steps", "teachers", "teacher_steps"):
+        if (value := getattr(args, name)) is not None:
+            training = replace(training, **{name: value})
+    pool = training.pool
+    if args.copies is not None:
+        pool = replace(pool, copies=args.copies)
+    if args.synthetic is not None:
+        pool = replace(pool, rendered=args.synthetic)
+    return replace(training, pool=pool)

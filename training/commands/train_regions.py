@@ -1,0 +1,62 @@
+"""`lightgesture train regions`: the nets and trees that tell hands from the rest of a picture."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.training.commands.train import model_path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    parser.add_argument(
+        "--data",
+        required=True,
+        metavar="DIR",
+        help="data folder with hands/, webcam/, frames/ and negatives/ and their tables",
+    )
+    parser.add_argument(
+        "--out", default="selector.npz", metavar="NPZ", help="selector file (default: selector.npz)"
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of all that is drawn (default: 0)")
+    parser.add_argument(
+        "--jobs", type=int, default=1, metavar="N", help="processes that compose (default: 1)"
+    )
+    parser.add_argument(
+        "--steps",
+        type=int,
+        metavar="N",
+        help="of the locator's training; the refiner's takes four fifths (default: 10000)",
+    )
+    parser.add_argument(
+        "--without",
+        nargs="+",
+        default=[],
+        metavar="SOURCE",
+        help="sources that are not trained on, for an evaluation on them",
+    )
+    parser.add_argument("--fold", metavar="I/N", help="leave out one fold of all sources too, such as 2/5")
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train and write the selector and its card."""
+    from lightgesture.training.pool.left_out import left_out
+    from lightgesture.training.regions.train import RegionTraining, train_regions
+
+    out = model_path(args.out)
+    for name, value, least in (("seed", args.seed, 0), ("jobs", args.jobs, 1), ("steps", args.steps, 2)):
+        if value is not None and value < least:
+            raise UsageError(f"--{name} is {value}; it must be {least} or more")
+    try:
+        without = left_out(args.without, args.fold)
+    except ValueError as error:
+        raise UsageError(f"--fold: {error}") from error
+    settings = RegionTraining()
+    if args.steps is not None:
+        settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
+    progress = (lambda _: None) if args.quiet else say
+    train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
+    return ExitStatus.OK

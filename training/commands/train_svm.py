@@ -1,0 +1,84 @@
+"""`lightgesture train svm`: the support vector machine that reads hand patches."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.training.commands.hand_data import add_data_arguments, count
+from lightgesture.training.commands.train import model_path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_data_arguments(parser)
+    parser.add_argument(
+        "--synthetic",
+        type=count,
+        default=0,
+        metavar="N",
+        help="rendered hands beside the real ones, or alone without --data (default: 0)",
+    )
+    parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
+    parser.add_argument(
+        "--copies",
+        type=count,
+        metavar="N",
+        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
+    )
+    parser.add_argument(
+        "--centres",
+        type=count,
+        metavar="N",
+        help="vectors of the machine (default: 2000); size grows with them",
+    )
+    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 40000)")
+    parser.add_argument(
+        "--jobs",
+        type=count,
+        default=1,
+        metavar="N",
+        help="processes that draw (default: 1); changes nothing else",
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train, write the model and its card, and tell the scores of sources held out."""
+    from lightgesture.models import ModelError
+    from lightgesture.training.card import summary
+    from lightgesture.training.svm.machine import SvmSettings
+    from lightgesture.training.svm.train import SvmTraining, train_svm_to_file
+    from lightgesture.training.time_left import tenths
+
+    if args.data is None and not args.synthetic:
+        raise UsageError("nothing to train on; name pictures with --data or a number of rendered hands")
+    for name in ("copies", "centres", "jobs"):
+        if getattr(args, name) == 0:
+            raise UsageError(f"--{name} is 0; it must be 1 or more")
+    out = model_path(args.out)
+    training = SvmTraining(
+        data=Path(args.data) if args.data else None,
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        without=tuple(args.without),
+        seed=args.seed,
+        jobs=args.jobs,
+    )
+    pool, svm = replace(training.pool, rendered=args.synthetic), SvmSettings()
+    if args.copies is not None:
+        pool = replace(pool, copies=args.copies)
+    if args.centres is not None:
+        svm = replace(svm, centres=args.centres)
+    if args.steps is not None:
+        svm = replace(svm, descent=replace(svm.descent, steps=args.steps))
+    progress = (lambda _: None) if args.quiet else say
+    try:
+        card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, tenths(progress))
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if not args.quiet:
+        for line in summary(card, out):
+            say(line)
+    return ExitStatus.OK

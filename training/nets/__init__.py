@@ -1,0 +1,1 @@
+"""Nets: architectures, samples, training, quantisation."""

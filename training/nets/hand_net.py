@@ -1,0 +1,141 @@
+"""Training of a hand net on a pool of patches, if wanted from larger nets' answers too. Needs torch."""
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+from torch.nn import functional
+
+from lightgesture.features.net.network import IntegerNetwork, Node, Shape
+from lightgesture.features.outline.contours import ContourSettings, contour_vectors
+from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
+from lightgesture.training.nets.hand_samples import HandBatch, HandSamples, standardised
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, train_net
+from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.torch_network import TorchNetwork
+
+Float = NDArray[np.float32]
+STANDARD_RANGE = (-3.0, 3.0)
+"""Of the standardised values of patches and outlines."""
+CALIBRATION = 12
+"""Batches from which the range of each tensor is measured."""
+
+
+@dataclass(frozen=True, slots=True)
+class NetSettings:
+    """steps, batch, rate: of the optimiser. matrix_rate: of the layers within the net, see `optimisers`.
+    precision: see `net_training.PRECISIONS`.
+    smoothing: share of the truth that is spread over all classes, 0 to 0.2.
+    taught: share of the loss that is the distance to the teachers' answers, 0 to 1. softness: temperature of both
+    answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
+
+    steps: int
+    precision: Precision = "float32"
+    batch: int = 128
+    rate: float = 3e-3
+    matrix_rate: float = 0.05
+    smoothing: float = 0.05
+    taught: float = 1.0
+    softness: float = 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OutlineScale:
+    """mean, deviation: float32 (c,), of the outline's numbers; empty for a net without."""
+
+    mean: Float
+    deviation: Float
+
+    def apply(self, contours: Float) -> Float:
+        """Standardised, float32 (n, c), within the range that the integers hold."""
+        values = (contours - self.mean) / self.deviation
+        return np.asarray(np.clip(values, *STANDARD_RANGE), np.float32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LearntNet:
+    """net: in floating point. samples: what it learnt from. scale: of the outline's numbers."""
+
+    net: TorchNetwork
+    samples: HandSamples
+    scale: OutlineScale
+
+    def scores(self, patches: NDArray[np.uint8], contour: ContourSettings) -> Float:
+        """Of patches, uint8 (n, size, size, 3), as float32 (n, classes)."""
+        seen = HandBatch(standardised(patches), contour_vectors(patches, contour), np.zeros(0, np.int64))
+        known = self.scale if CONTOUR in self.net.inputs else None
+        with torch.no_grad():
+            return np.asarray(self.net(inputs_of(seen, known))[SCORES].numpy(), np.float32)
+
+
+def make_net(nodes: tuple[Node, ...], size: int, contours: int, seed: int) -> TorchNetwork:
+    """A net with random weights for patches of `size` pixels and so many numbers of the outline."""
+    torch.manual_seed(seed)
+    inputs: dict[str, Shape] = {PATCH: (size, size, 3)}
+    if contours:
+        inputs[CONTOUR] = (1, 1, contours)
+    return TorchNetwork(inputs, nodes, (SCORES,))
+
+
+def train_hand_net(
+    net: TorchNetwork,
+    samples: HandSamples,
+    scale: OutlineScale | None,
+    settings: NetSettings,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
+    stopping: threading.Event | None = None,
+) -> TorchNetwork:
+    """The trained net in floating point; goes on at `checkpoint` where there is one. scale: None for a net without
+    outline. stopping: see `train_net`.
+
+    It takes one thread: a step of so small a net is no quicker on two, and so no number of cores changes the result.
+    """
+    torch.set_num_threads(1)
+
+    def batch(rng: np.random.Generator) -> Batch:
+        drawn = samples.draw(rng, settings.batch)
+        inputs = inputs_of(drawn, scale if CONTOUR in net.inputs else None)
+        truth = (drawn.truth,) if drawn.answers is None else (drawn.truth, drawn.answers)
+        return inputs, tuple(torch.from_numpy(values) for values in truth)
+
+    def loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
+        scores = outputs[SCORES]
+        own = functional.cross_entropy(scores, truth[0], label_smoothing=settings.smoothing)
+        if len(truth) == 1:
+            return own
+        soft = settings.softness
+        wanted = torch.softmax(truth[1] / soft, dim=1)
+        far = functional.kl_div(torch.log_softmax(scores / soft, dim=1), wanted, reduction="batchmean")
+        return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
+
+    warm_up = max(1, min(300, settings.steps // 4))
+    loop = LoopSettings(
+        settings.steps, settings.rate, settings.matrix_rate, warm_up=warm_up, precision=settings.precision
+    )
+    return train_net(net, batch, loss, loop, seed, checkpoint, progress, stopping)
+
+
+def to_integers(
+    net: TorchNetwork, samples: HandSamples, scale: OutlineScale, settings: NetSettings, seed: int
+) -> IntegerNetwork:
+    """The net in integers, the ranges of its tensors measured on batches of its own training."""
+    drawn = (
+        samples.draw(np.random.default_rng((seed, settings.steps + 1, i)), 128) for i in range(CALIBRATION)
+    )
+    known = scale if CONTOUR in net.inputs else None
+    return quantise(net, (inputs_of(one, known) for one in drawn), dict.fromkeys(net.inputs, STANDARD_RANGE))
+
+
+def inputs_of(batch: HandBatch, scale: OutlineScale | None) -> dict[str, Tensor]:
+    """A batch as the net's inputs; scale: None for a net without outline."""
+    inputs = {PATCH: torch.from_numpy(batch.patches).permute(0, 3, 1, 2)}
+    if scale is not None:
+        inputs[CONTOUR] = torch.from_numpy(scale.apply(batch.contours))[:, :, None, None]
+    return inputs

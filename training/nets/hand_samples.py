@@ -1,0 +1,118 @@
+"""Batches for a hand net, drawn from a pool of altered patches."""
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.standardise import StandardSettings
+from lightgesture.training.pool.patch_pool import PatchPool
+from lightgesture.training.svm.machine import sample_weights
+
+Float = NDArray[np.float32]
+Random = np.random.Generator
+
+_ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))
+
+
+@dataclass(frozen=True, slots=True)
+class HandSampling:
+    """What becomes of a patch each time it is seen. erased: share of patches of which a part is covered, 0 to 1.
+    largest: side of that part over the patch's, 0 to 1."""
+
+    erased: float = 0.2
+    largest: float = 0.4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HandBatch:
+    """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,).
+    answers: float32 (n, classes), scores of other nets for the same patches, None where nobody gave any."""
+
+    patches: Float
+    contours: Float
+    truth: NDArray[np.int64]
+    answers: Float | None = None
+
+
+def standardised(patches: NDArray[np.uint8]) -> Float:
+    """What `features.standardise.channel_tables` makes of each patch, (n, h, w, 3), for many at once."""
+    settings = StandardSettings()
+    roots = _ROOTS[patches]
+    mean = roots.mean(axis=(1, 2), keepdims=True)
+    variance = np.square(roots).mean(axis=(1, 2), keepdims=True) - np.square(mean)
+    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(settings.evenness))
+    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32)
+
+
+class HandSamples:
+    """Draws from the rows of a pool that are chosen, so that no person and no class rules."""
+
+    def __init__(
+        self,
+        pool: PatchPool,
+        chosen: NDArray[np.bool_],
+        classes: Sequence[str],
+        margin: int,
+        settings: HandSampling | None = None,
+    ) -> None:
+        """chosen: bool (n,), of the pool. margin: pixels by which a patch may be shifted each way."""
+        self._pool, self._margin, self._settings = pool, margin, settings or HandSampling()
+        self._answers: NDArray[np.float16] | None = None
+        self.classes = tuple(classes)
+        self._rows = np.flatnonzero(chosen)
+        index = {name: number for number, name in enumerate(classes)}
+        self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
+        # Beside the shapes that people show as no token, parts of hands and of rooms are a kind of their own.
+        beside = np.where(pool.hands[self._rows] >= 0, "", " beside")
+        weights = sample_weights(self._truth, np.char.add(pool.sources[self._rows], beside)).astype(
+            np.float64
+        )
+        self._cumulative = np.cumsum(weights) / weights.sum()
+
+    def __len__(self) -> int:
+        """Number of rows of the pool that are drawn from."""
+        return len(self._rows)
+
+    @property
+    def size(self) -> int:
+        """Side of a drawn patch, pixels."""
+        return int(self._pool.patches.shape[1] - 2 * self._margin)
+
+    def with_answers(self, answers: NDArray[np.float16]) -> "HandSamples":
+        """The same, its batches with other nets' scores: (rows, classes), as `middles` counts the rows."""
+        other = copy.copy(self)
+        other._answers = answers
+        return other
+
+    def middles(self, first: int, last: int) -> Float:
+        """The chosen rows `first` to `last` as they are, neither shifted nor covered: (n, size, size, 3)."""
+        inner = slice(self._margin, self._margin + self.size)
+        return standardised(np.asarray(self._pool.patches[self._rows[first:last]][:, inner, inner]))
+
+    def draw(self, random: Random, count: int) -> HandBatch:
+        """`count` patches."""
+        drawn = np.minimum(np.searchsorted(self._cumulative, random.random(count)), len(self._rows) - 1)
+        rows = self._rows[drawn]
+        seen = standardised(self._shifted(rows, random))
+        self._erase(seen, random)
+        answers = None if self._answers is None else self._answers[drawn].astype(np.float32)
+        return HandBatch(seen, self._pool.contours[rows].astype(np.float32), self._truth[drawn], answers)
+
+    def _shifted(self, rows: NDArray[np.int64], random: Random) -> NDArray[np.uint8]:
+        size = self.size
+        corners = random.integers(2 * self._margin + 1, size=(len(rows), 2))
+        parts = [
+            self._pool.patches[row, top : top + size, left : left + size]
+            for row, (top, left) in zip(rows, corners, strict=True)
+        ]
+        return np.stack(parts)
+
+    def _erase(self, seen: Float, random: Random) -> None:
+        size = seen.shape[1]
+        for number in np.flatnonzero(random.random(len(seen)) < self._settings.erased):
+            height, width = random.integers(2, max(3, round(self._settings.largest * size)), 2)
+            top, left = random.integers(size - height + 1), random.integers(size - width + 1)
+            seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)

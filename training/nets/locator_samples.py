@@ -1,0 +1,193 @@
+"""Samples for the locator: whole pictures, moved and in another light, with the maps that the net is to give."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.find.peaks import STRIDE
+from lightgesture.features.standardise import channel_tables
+from lightgesture.features.types import Box, Image
+from lightgesture.training.pictures.photometric import PhotometricSettings, photometric
+from lightgesture.training.regions.trees import BoxedPicture
+
+Float = NDArray[np.float32]
+Random = np.random.Generator
+WIDTH, HEIGHT = 160, 120
+"""Working picture, pixels."""
+FILLED = 128
+"""Its height filled up to a multiple of 16."""
+
+
+@dataclass(frozen=True, slots=True)
+class LocatorSampling:
+    """What is drawn.
+
+    real, empty: shares of whole frames and of water without a hand; the rest is composed. scales: range of the size for
+    each kind, 1 fills the working picture. turned: share of turned pictures; turn_deg: their standard deviation.
+    stretch: standard deviation of the logarithm of the aspect. least_visible: share of a hand that must be inside to
+    be learnt. least_side: working pixels, likewise. spread: standard deviation of a heat spot over the box's side.
+    near: heat above which a cell learns the box.
+    """
+
+    real: float = 0.38
+    empty: float = 0.12
+    real_scale: tuple[float, float] = (0.6, 1.5)
+    empty_scale: tuple[float, float] = (0.7, 2.2)
+    composed_scale: tuple[float, float] = (0.75, 1.5)
+    turned: float = 0.4
+    turn_deg: float = 8.0
+    stretch: float = 0.06
+    least_visible: float = 0.55
+    least_side: float = 5.0
+    spread: float = 0.18
+    near: float = 0.45
+    light: PhotometricSettings = field(default_factory=PhotometricSettings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Targets:
+    """On cells of 4 pixels. heat, weight: (2, h, w) of hands and faces. box: (4, h, w), distances to left, upper, right
+    and lower edge, pixels. box_weight: (h, w)."""
+
+    heat: Float
+    weight: Float
+    box: Float
+    box_weight: Float
+
+
+def warp(
+    picture: BoxedPicture, rng: Random, scales: tuple[float, float], settings: LocatorSampling
+) -> tuple[Image, Float, Float]:
+    """A working picture of it, with the corners (x0, y0, x1, y1) of hands and faces, (n, 4) each."""
+    image = picture.image
+    height, width = image.shape[:2]
+    scale = min(WIDTH / width, HEIGHT / height) * float(np.exp(rng.uniform(*np.log(scales))))
+    turn = np.deg2rad(rng.normal(0, settings.turn_deg)) if rng.random() < settings.turned else 0.0
+    stretch = float(np.exp(rng.normal(0, settings.stretch)))
+    flip = -1.0 if rng.random() < 0.5 else 1.0
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    linear = rotation @ np.diag([scale * stretch * flip, scale / stretch])
+    free = (
+        np.maximum(np.abs([width * scale - WIDTH, height * scale - HEIGHT]), (0.12 * WIDTH, 0.12 * HEIGHT))
+        / 2
+    )
+    middle = np.array([WIDTH, HEIGHT]) / 2 + rng.uniform(-free, free)
+    shift = middle - linear @ (np.array([width, height]) / 2)
+    fill = cv2.BORDER_REPLICATE if rng.random() < 0.5 else cv2.BORDER_CONSTANT
+    out = _transformed(image, linear, shift, scale, fill)
+    return out, moved(picture.boxes, linear, shift), moved(picture.faces, linear, shift)
+
+
+def _transformed(
+    image: Image, linear: NDArray[np.float64], shift: NDArray[np.float64], scale: float, fill: int
+) -> Image:
+    mean = cv2.mean(image)
+    own = np.ones(2)
+    if scale < 0.6:  # interpolation alone would alias
+        share = max(scale, 0.5)
+        small = np.asarray(
+            cv2.resize(image, None, fx=share, fy=share, interpolation=cv2.INTER_AREA), np.uint8
+        )
+        own = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
+        image = small
+    # Boxes count from corners of pixels, warpAffine from their centres.
+    matrix = np.column_stack([linear * own, shift + linear @ (0.5 * own) - 0.5])
+    return np.asarray(
+        cv2.warpAffine(image, matrix, (WIDTH, HEIGHT), borderMode=fill, borderValue=mean), np.uint8
+    )
+
+
+def moved(boxes: Sequence[Box], linear: NDArray[np.float64], shift: NDArray[np.float64]) -> Float:
+    """Corners round the ellipses inscribed in the boxes, which a turn does not inflate: float32 (n, 4)."""
+    values = np.array(boxes, np.float64).reshape(-1, 4)
+    half = values[:, 2:] / 2
+    centres = (values[:, :2] + half) @ linear.T + shift
+    reach = np.sqrt((half**2) @ (linear**2).T)
+    return np.concatenate([centres - reach, centres + reach], axis=1).astype(np.float32)
+
+
+def make_targets(hands: Float, faces: Float, all_faces: bool, settings: LocatorSampling) -> Targets:
+    """Maps for corners (n, 4). Where not all faces are known, only cells round the known ones and on hands count."""
+    rows, columns = FILLED // STRIDE, WIDTH // STRIDE
+    maps = Targets(
+        np.zeros((2, rows, columns), np.float32),
+        np.ones((2, rows, columns), np.float32),
+        np.zeros((4, rows, columns), np.float32),
+        np.zeros((rows, columns), np.float32),
+    )
+    maps.weight[1] = float(all_faces)
+    best = np.zeros((rows, columns), np.float32)
+    y, x = ((np.mgrid[0:rows, 0:columns] + 0.5) * STRIDE).astype(np.float32)
+    limits = np.array([WIDTH, HEIGHT, WIDTH, HEIGHT], np.float32)
+    for corners in hands:
+        seen = np.clip(corners, 0, limits)
+        area, whole = _area(seen), _area(corners)
+        if area <= 0:
+            continue
+        if area < settings.least_visible * whole or area < settings.least_side**2:
+            left, top, right, bottom = (seen / STRIDE).astype(int)
+            maps.weight[0, top : bottom + 1, left : right + 1] = 0
+            continue
+        spot = _spot(maps.heat[0], seen, x, y, settings.spread)
+        near = (spot > best) & (spot > settings.near)
+        np.maximum(best, spot, out=best)
+        distances = np.stack([x - seen[0], y - seen[1], seen[2] - x, seen[3] - y])
+        maps.box[:, near] = distances[:, near]
+        maps.box_weight[near] = spot[near]
+        maps.weight[1][spot > 0.2] = 1  # a hand is no face
+    for corners in faces:
+        seen = np.clip(corners, 0, limits)
+        if _area(seen) >= 0.5 * _area(corners) > 0:
+            spot = _spot(maps.heat[1], seen, x, y, settings.spread)
+            maps.weight[1][spot > 0.01] = 1
+    maps.box_weight[maps.box.min(axis=0) <= 0] = 0
+    return maps
+
+
+def _area(corners: Float) -> float:
+    return float(max(corners[2] - corners[0], 0) * max(corners[3] - corners[1], 0))
+
+
+def _spot(heat: Float, corners: Float, x: Float, y: Float, spread: float) -> Float:
+    """Draw a Gaussian of height 1 at the middle of a box into `heat`; the Gaussian alone."""
+    middle = (corners[:2] + corners[2:]) / 2
+    wide, tall = np.maximum(spread * (corners[2:] - corners[:2]), 0.45 * STRIDE)
+    spot = np.exp(-((x - middle[0]) ** 2 / (2 * wide**2) + (y - middle[1]) ** 2 / (2 * tall**2)))
+    column, row = (middle / STRIDE).astype(int)
+    spot[min(row, heat.shape[0] - 1), min(column, heat.shape[1] - 1)] = 1
+    np.maximum(heat, spot, out=heat)
+    return np.asarray(spot, np.float32)
+
+
+class LocatorSamples:
+    """Draws samples without end."""
+
+    def __init__(
+        self,
+        frames: Sequence[BoxedPicture],
+        empty: Sequence[BoxedPicture],
+        composed: Sequence[BoxedPicture],
+        settings: LocatorSampling | None = None,
+    ) -> None:
+        """Each of the three holds at least one picture."""
+        self._frames, self._empty, self._composed = frames, empty, composed
+        self._settings = settings or LocatorSampling()
+
+    def draw(self, rng: Random) -> tuple[Float, Targets]:
+        """Standardised picture, float32 (128, 160, 3), and its targets."""
+        settings, kind = self._settings, rng.random()
+        pictures, scales = self._composed, settings.composed_scale
+        in_air = kind < settings.real
+        if in_air:
+            pictures, scales = self._frames, settings.real_scale
+        elif kind < settings.real + settings.empty:
+            pictures, scales = self._empty, settings.empty_scale
+        picture = pictures[int(rng.integers(len(pictures)))]
+        image, hands, faces = warp(picture, rng, scales, settings)
+        image = photometric(image, rng, in_air, settings.light)
+        seen = np.zeros((FILLED, WIDTH, 3), np.float32)
+        seen[:HEIGHT] = cv2.LUT(image, channel_tables(image))
+        return seen, make_targets(hands, faces, picture.all_faces, settings)

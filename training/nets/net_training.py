@@ -1,0 +1,140 @@
+"""The loop that trains a net: a cosine of the rate, a running mean of the weights, checkpoints. Needs torch."""
+
+import copy
+import threading
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from lightgesture.results.atomic import replacing
+from lightgesture.training.nets.optimisers import NetOptimiser
+from lightgesture.training.nets.torch_network import TorchNetwork
+from lightgesture.training.time_left import TimeLeft
+
+Batch = tuple[Mapping[str, Tensor], tuple[Tensor, ...]]
+"""Inputs of the net and what the loss compares with."""
+Precision = Literal["float32", "bfloat16"]
+PRECISIONS: tuple[Precision, ...] = get_args(Precision)
+"""In which a net is reckoned while it learns; its weights are kept in float32. bfloat16 takes two thirds of the time
+on processors with instructions for it and several times as long on others."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSettings:
+    """steps: of the optimiser. rate: highest learning rate. matrix_rate: that of the matrices of layers within the net,
+    0 where all learn alike, see `optimisers`. warm_up: steps until they are reached. decay: of weights. clip: largest
+    norm of the gradient. mean: share of the running mean that each step keeps. save_every: steps between checkpoints.
+    precision: one of `PRECISIONS`."""
+
+    steps: int
+    rate: float
+    matrix_rate: float = 0.0
+    warm_up: int = 300
+    decay: float = 0.02
+    clip: float = 5.0
+    mean: float = 0.999
+    save_every: int = 500
+    precision: Precision = "float32"
+
+
+def train_net(
+    net: TorchNetwork,
+    batch: Callable[[np.random.Generator], Batch],
+    loss: Callable[[Mapping[str, Tensor], tuple[Tensor, ...]], Tensor],
+    settings: LoopSettings,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
+    stopping: threading.Event | None = None,
+) -> TorchNetwork:
+    """The running mean of the trained net; goes on at `checkpoint` where there is one.
+
+    Step `n` draws its batch from (seed, n) alone, so that an interrupted training gives what a whole one gives.
+    stopping: is set where another thread wants no more of it; KeyboardInterrupt is raised then.
+    """
+    # The order in memory that the system's convolutions of few channels are quickest in.
+    net = net.to(memory_format=torch.channels_last)
+    mean = copy.deepcopy(net)
+    optimiser = NetOptimiser(net, settings.rate, settings.matrix_rate, settings.decay)
+    first = _resume(checkpoint, net, mean, optimiser)
+    left = TimeLeft(settings.steps, first)
+    net.train()
+    for step, (inputs, truth) in _ahead(batch, first, settings.steps, seed):
+        if stopping is not None and stopping.is_set():
+            raise KeyboardInterrupt
+        value = loss(net_outputs(net, inputs, settings.precision), truth)
+        value.backward()  # type: ignore[no-untyped-call]
+        torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)
+        optimiser.step(_share_of_rate(step, settings))
+        _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
+        if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
+            progress(
+                f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}, "
+                f"{left.told(step + 1)}"
+            )
+            state = {"net": net.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict()}
+            with replacing(checkpoint) as temporary:
+                torch.save({**state, "step": step + 1}, temporary)
+    return mean.eval()
+
+
+def net_outputs(net: TorchNetwork, inputs: Mapping[str, Tensor], precision: Precision) -> dict[str, Tensor]:
+    """The net's outputs, reckoned in the given precision, in float32."""
+    if precision == "float32":
+        return net(inputs)  # type: ignore[no-any-return]
+    with torch.autocast("cpu", dtype=torch.bfloat16):
+        outputs = net(inputs)
+    return {name: value.float() for name, value in outputs.items()}
+
+
+def _ahead(
+    batch: Callable[[np.random.Generator], Batch], first: int, steps: int, seed: int
+) -> Iterator[tuple[int, Batch]]:
+    """Steps and their batches; the next one is drawn while the net learns from the last."""
+    with ThreadPoolExecutor(1) as pool:
+        coming = pool.submit(batch, np.random.default_rng((seed, first)))
+        for step in range(first, steps):
+            drawn = coming.result()
+            if step + 1 < steps:
+                coming = pool.submit(batch, np.random.default_rng((seed, step + 1)))
+            yield step, drawn
+
+
+def _share_of_rate(step: int, settings: LoopSettings) -> float:
+    cosine = 0.5 * (1.0 + np.cos(np.pi * step / settings.steps))
+    return float(min(1.0, (step + 1) / settings.warm_up) * (cosine * 0.98 + 0.02))
+
+
+def _resume(checkpoint: Path, net: TorchNetwork, mean: TorchNetwork, optimiser: NetOptimiser) -> int:
+    if not checkpoint.exists():
+        return 0
+    state = torch.load(checkpoint, weights_only=True)
+    net.load_state_dict(state["net"])
+    mean.load_state_dict(state["mean"])
+    optimiser.load_state_dict(state["optimiser"])
+    return int(state["step"])
+
+
+def _average(mean: TorchNetwork, net: TorchNetwork, keep: float) -> None:
+    with torch.no_grad():
+        for own, new in zip(mean.state_dict().values(), net.state_dict().values(), strict=True):
+            if own.dtype.is_floating_point:
+                own.lerp_(new, 1.0 - keep)
+            else:
+                own.copy_(new)
+
+
+def giou(one: Tensor, other: Tensor) -> Tensor:
+    """Generalised IoU (Rezatofighi et al., 2019) of corners (n, 4) each: (n,), -1 to 1."""
+    low, high = torch.maximum(one[:, :2], other[:, :2]), torch.minimum(one[:, 2:], other[:, 2:])
+    inner = (high - low).clamp(min=0).prod(dim=1)
+    union = (one[:, 2:] - one[:, :2]).prod(dim=1) + (other[:, 2:] - other[:, :2]).prod(dim=1) - inner
+    low, high = torch.minimum(one[:, :2], other[:, :2]), torch.maximum(one[:, 2:], other[:, 2:])
+    hull = (high - low).prod(dim=1)
+    return inner / union - (hull - union) / hull

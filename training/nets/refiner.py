@@ -1,0 +1,57 @@
+"""Training of the refiner. Needs torch."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from lightgesture.features.find.refiner import BOX, HAND, INPUT
+from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.training.nets.architectures import REFINER_INPUT, REFINER_OUTPUTS, refiner_nodes
+from lightgesture.training.nets.net_training import Batch, LoopSettings, giou, train_net
+from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.refiner_samples import RefinerSamples
+from lightgesture.training.nets.torch_network import TorchNetwork
+
+PICTURES = 32
+"""Of one batch."""
+CALIBRATION = 12
+RATE = 2e-3
+LEAST_SIDE = 0.02
+"""Of a box in window sides, so that the overlap always has a slope."""
+
+
+def train_refiner(
+    samples: RefinerSamples, steps: int, seed: int, checkpoint: Path, progress: Callable[[str], None]
+) -> IntegerNetwork:
+    """The trained net in integers."""
+    torch.manual_seed(seed)
+    net = TorchNetwork({INPUT: REFINER_INPUT}, refiner_nodes(), REFINER_OUTPUTS)
+
+    def batch(rng: np.random.Generator) -> Batch:
+        windows, targets = zip(*(samples.draw(rng) for _ in range(PICTURES)), strict=True)
+        seen = torch.from_numpy(np.concatenate(windows)).permute(0, 3, 1, 2)
+        return {INPUT: seen}, (torch.from_numpy(np.concatenate(targets)),)
+
+    loop = LoopSettings(steps, RATE, warm_up=200, mean=0.998)
+    trained = train_net(net, batch, refiner_loss, loop, seed, checkpoint, progress)
+    typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
+    return quantise(trained, typical, {INPUT: (-3.0, 3.0)})
+
+
+def refiner_loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
+    """Cross-entropy of hand or not, GIoU and smoothed distance of the boxes of hands."""
+    (targets,) = truth
+    weight, hand = targets[:, 5], targets[:, 0]
+    each = functional.binary_cross_entropy_with_logits(
+        outputs[HAND][:, 0], hand * 0.98 + 0.01, reduction="none"
+    )
+    loss = (each * weight).sum() / weight.sum().clamp(min=1)
+    if not bool((hand > 0).any()):
+        return loss
+    own, wanted = outputs[BOX][hand > 0], targets[hand > 0, 1:5]
+    corners = torch.cat([own[:, :2], torch.maximum(own[:, 2:], own[:, :2] + LEAST_SIDE)], dim=1)
+    return loss + (1 - giou(corners, wanted)).mean() + functional.smooth_l1_loss(own * 8, wanted * 8)

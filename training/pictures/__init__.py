@@ -1,0 +1,1 @@
+"""Pictures to learn from: composed, altered, lit and covered."""

@@ -1,0 +1,1 @@
+"""Samples and pools of them, by source."""

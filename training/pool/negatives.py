@@ -1,0 +1,171 @@
+"""Regions that are no token: faces, arms, walls, water, and boxes that miss the hand.
+
+What the selector proposes in a picture and what is not a hand there is what the classifier meets on the board,
+so most of these regions are its own proposals.
+"""
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.errors import InputError
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.proposals import propose
+from lightgesture.features.geometry import pairwise_iou
+from lightgesture.features.types import Box, Image
+from lightgesture.models import NONE, TrainingSample
+from lightgesture.sources import is_picture_name, read_picture
+from lightgesture.training.pool.samples import LabelledHand
+
+Random = np.random.Generator
+
+
+@dataclass(frozen=True, slots=True)
+class NegativeSettings:
+    """How many regions of which kind.
+
+    longest_side: pixels to which a picture is reduced. proposals, random_boxes: regions of each picture.
+    smallest, largest: side of a random box over the picture's shorter side.
+    missed: share of labelled hands beside which a bad box is laid. accepted_iou: a box that overlaps a hand more
+        than this is no negative, 0 to 1.
+    """
+
+    longest_side: int = 320
+    proposals: int = 5
+    random_boxes: int = 3
+    smallest: float = 0.1
+    largest: float = 0.6
+    missed: float = 0.3
+    accepted_iou: float = 0.3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A whole picture. hands, faces: boxes in its pixels; a face is no hand. source: as of a sample."""
+
+    image: Image
+    hands: tuple[Box, ...]
+    faces: tuple[Box, ...]
+    source: str
+
+
+def read_backgrounds(folder: Path, settings: NegativeSettings) -> list[Scene]:
+    """All pictures under a folder, without any hand; the source is the folder a picture lies in."""
+    if not folder.is_dir():
+        raise InputError(f"{folder}: no such folder; give --backgrounds a folder of pictures without hands")
+    paths = sorted(path for path in folder.rglob("*") if is_picture_name(path))
+    if not paths:
+        raise InputError(
+            f"{folder}: holds no pictures; give --backgrounds a folder of pictures without hands"
+        )
+    return [
+        Scene(_reduced(read_picture(path), settings)[0], (), (), f"background {path.parent.name}")
+        for path in paths
+    ]
+
+
+def read_scenes(manifest: Path, settings: NegativeSettings) -> list[Scene]:
+    """Whole pictures with boxes: columns `file`, `x`, `y`, `w`, `h`, and if known `set` and `face_boxes`.
+
+    Several rows may share a file; `face_boxes` is `x,y,w,h` joined by `;`. Paths are relative to the manifest.
+    """
+    hands: dict[str, list[Box]] = {}
+    rows: dict[str, dict[str, str]] = {}
+    try:
+        with manifest.open(encoding="utf-8", newline="") as stream:
+            for row in csv.DictReader(stream):
+                hands.setdefault(row["file"], []).append(_box([row[name] for name in ("x", "y", "w", "h")]))
+                rows[row["file"]] = row
+        faces = {name: [_box(text.split(",")) for text in _texts(row)] for name, row in rows.items()}
+    except (OSError, UnicodeDecodeError, csv.Error, KeyError, TypeError, ValueError) as error:
+        raise InputError(f"{manifest}: is no table of pictures and boxes ({error}); see --scenes") from error
+    return [
+        _scene(manifest.parent / name, hands[name], faces[name], row.get("set") or "scenes", settings)
+        for name, row in rows.items()
+    ]
+
+
+def negatives(
+    scenes: Sequence[Scene], settings: NegativeSettings, random: Random
+) -> Iterator[TrainingSample]:
+    """Faces, proposals and random boxes of pictures, none of them on a hand."""
+    colours = ColourStage()
+    for scene in scenes:
+        colour = colours.process(scene.image)
+        proposed = np.asarray(propose(colour).boxes, np.float64) * np.tile(colour.scale, 2)
+        drawn = _random_boxes(scene.image.shape[:2], settings, random)
+        chosen = _clear(proposed, scene.hands, settings)
+        chosen = chosen[random.permutation(len(chosen))[: settings.proposals]]
+        boxes = [*scene.faces, *_as_boxes(chosen), *_as_boxes(_clear(drawn, scene.hands, settings))]
+        for box in boxes:
+            side = "left" if random.random() < 0.5 else "right"
+            yield TrainingSample(image=scene.image, box=box, side=side, token=NONE, source=scene.source)
+
+
+def missed_hand(hand: LabelledHand, settings: NegativeSettings, random: Random) -> TrainingSample | None:
+    """A box beside or on a small part of a hand, None where the draw overlaps the hand too much."""
+    x, y, width, height = hand.box
+    side = max(width, height) * random.uniform(0.3, 0.9)
+    centre = np.array([x + width / 2, y + height / 2]) + random.uniform(-0.7, 0.7, 2) * (width, height)
+    box = (round(centre[0] - side / 2), round(centre[1] - side / 2), max(2, round(side)), max(2, round(side)))
+    overlap = pairwise_iou(np.array([box]), np.array([hand.box]))[0, 0]
+    rows, columns = hand.image.shape[:2]
+    inside = 0 <= centre[0] < columns and 0 <= centre[1] < rows
+    if overlap > settings.accepted_iou or not inside:
+        return None
+    return TrainingSample(image=hand.image, box=box, side=hand.side, token=NONE, source=hand.source)
+
+
+def _scene(path: Path, hands: list[Box], faces: list[Box], source: str, settings: NegativeSettings) -> Scene:
+    image, scale = _reduced(read_picture(path), settings)
+
+    def scaled(boxes: list[Box]) -> tuple[Box, ...]:
+        return tuple(_as_boxes(np.array(boxes, np.float64).reshape(-1, 4) * scale))
+
+    return Scene(image, scaled(hands), scaled(faces), source)
+
+
+def _reduced(image: Image, settings: NegativeSettings) -> tuple[Image, float]:
+    """The picture at most `longest_side` pixels long, and the factor."""
+    scale = settings.longest_side / max(image.shape[:2])
+    if scale >= 1.0:
+        return image, 1.0
+    small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8), scale
+
+
+def _random_boxes(size: tuple[int, ...], settings: NegativeSettings, random: Random) -> NDArray[np.float64]:
+    rows, columns = size[:2]
+    sides = min(rows, columns) * random.uniform(settings.smallest, settings.largest, settings.random_boxes)
+    left = random.uniform(0.0, 1.0, len(sides)) * (columns - sides)
+    top = random.uniform(0.0, 1.0, len(sides)) * (rows - sides)
+    return np.stack([left, top, sides, sides], axis=1)
+
+
+def _clear(
+    boxes: NDArray[np.float64], hands: Sequence[Box], settings: NegativeSettings
+) -> NDArray[np.float64]:
+    """The boxes that overlap no hand."""
+    if not hands or not len(boxes):
+        return boxes
+    return np.asarray(boxes[pairwise_iou(boxes, np.array(hands)).max(axis=1) <= settings.accepted_iou])
+
+
+def _as_boxes(boxes: NDArray[np.float64]) -> list[Box]:
+    return [(round(x), round(y), max(2, round(w)), max(2, round(h))) for x, y, w, h in boxes.tolist()]
+
+
+def _texts(row: dict[str, str]) -> list[str]:
+    return [text for text in (row.get("face_boxes") or "").split(";") if text]
+
+
+def _box(texts: Sequence[str]) -> Box:
+    x, y, width, height = (round(float(text)) for text in texts)
+    if width <= 0 or height <= 0:
+        raise ValueError(f"box {x},{y},{width},{height} has no area")
+    return x, y, width, height

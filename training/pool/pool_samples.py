@@ -1,0 +1,73 @@
+"""A pool of patches, and the hands that it was drawn from, as samples of a machine that sees each of them once."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.patch import PatchSettings
+from lightgesture.features.types import Box
+from lightgesture.models import TrainingSample
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_pool import PatchPool
+
+
+@dataclass(frozen=True, slots=True)
+class PoolSampling:
+    """altered_weight: weight of a row that is no plain hand (altered much, hidden, no hand, rendered) beside 1 of a
+    hand as it is or hardly altered, 0 to 1; smaller reads plain pictures better, larger those in bad light and badly
+    boxed ones."""
+
+    altered_weight: float = 0.25
+
+
+def pool_samples(
+    pool: PatchPool,
+    originals: Originals,
+    rows: NDArray[np.bool_],
+    hands: NDArray[np.bool_],
+    settings: PoolSettings,
+    sampling: PoolSampling,
+    seed: int,
+) -> Iterator[TrainingSample]:
+    """The chosen hands as they are, then the chosen rows of the pool, each shifted within its margin once.
+
+    rows: bool, of the pool. hands: bool (n,), of the originals. Without any originals the rows count as such.
+    """
+    for place in np.flatnonzero(hands):
+        hand = originals.hands[int(place)]
+        yield TrainingSample(
+            image=hand.image, box=hand.box, side=hand.side, token=hand.token, source=hand.source
+        )
+    size = settings.patch.size
+    box = _whole(settings.patch)
+    corners = np.random.default_rng((seed, 2)).integers(2 * settings.margin + 1, size=(len(rows), 2))
+    mild = _mild_rows(pool, len(originals.hands), settings)
+    for row in np.flatnonzero(rows):
+        top, left = corners[row]
+        yield TrainingSample(
+            image=np.ascontiguousarray(pool.patches[row, top : top + size, left : left + size]),
+            box=box,
+            # Right hands were mirrored when the pool was drawn.
+            side="left",
+            token=str(pool.tokens[row]),
+            source=str(pool.sources[row]),
+            original=not originals.hands,
+            weight=1.0 if mild[row] else sampling.altered_weight,
+        )
+
+
+def _mild_rows(pool: PatchPool, hands: int, settings: PoolSettings) -> NDArray[np.bool_]:
+    """Which rows are mild copies: of all copies, in the pool's order, those after the `copies` of every hand."""
+    copies = np.flatnonzero(pool.hands >= 0)
+    mild = np.zeros(len(pool.hands), bool)
+    mild[copies[hands * settings.copies :]] = True
+    return mild
+
+
+def _whole(patch: PatchSettings) -> Box:
+    """The box whose patch is the whole of a picture of the patch's size."""
+    side = round(patch.size / patch.context)
+    place = (patch.size - side) // 2
+    return place, place, side, side

@@ -1,0 +1,186 @@
+"""Labelled hands from a manifest, or from folders named after their classes.
+
+A manifest is a CSV table with a header. `path` is relative to its folder, `token` a class name. The box is the
+outline `x`, `y`, `w`, `h` in pixels, or goes round the landmarks, `hx0` to `hy1`, and is grown to the outline; without
+either the whole picture is the hand. Optional: `set` (the person, room and camera; else the picture's folder), `side`
+(else left), `lm` (21 landmarks `x;y`), `licence`.
+"""
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.errors import InputError
+from lightgesture.features.types import Box, Image
+from lightgesture.models import CLASSES
+from lightgesture.sources import is_picture_name, read_picture
+from lightgesture.training.datasets import LANDMARK_MARGIN, grow_box
+
+KEPT_REACH = 2.2
+"""Side of what is kept of a picture over the longer side of the hand's box: enough for any altered copy."""
+
+KEPT_PIXELS = 160
+"""Longest side of what is kept, in pixels: larger ones only fill the memory, a patch being far smaller."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandRow:
+    """One row of truth. box: outline, pixels, None for the whole picture. landmarks: (21, 2) or None."""
+
+    path: Path
+    token: str
+    source: str
+    side: str = "left"
+    box: Box | None = None
+    landmarks: NDArray[np.float32] | None = field(default=None, compare=False)
+    licence: str = "none stated"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LabelledHand:
+    """A hand cut out of its picture with something around it. box, landmarks: pixels of `image`."""
+
+    image: Image
+    box: Box
+    side: str
+    token: str
+    source: str
+    landmarks: NDArray[np.float32] | None
+
+
+def landmark_box(landmarks: NDArray[np.float32]) -> Box:
+    """Outline of the hand from its landmarks (21, 2), pixels."""
+    (x0, y0), (x1, y1) = landmarks.min(axis=0).tolist(), landmarks.max(axis=0).tolist()
+    return grow_box(x0, y0, x1, y1, LANDMARK_MARGIN)
+
+
+def read_rows(data: Path, classes: Sequence[str] = CLASSES) -> list[HandRow]:
+    """Rows of a manifest, or of a folder with one folder a class.
+
+    Raises InputError for what cannot be read, an unknown class, fewer than two classes, or missing pictures.
+    """
+    rows = _folder_rows(data, classes) if data.is_dir() else _manifest_rows(data, classes)
+    missing = [row.path for row in rows if not row.path.is_file()]
+    if missing:
+        raise InputError(
+            f"{data}: {len(missing)} of {len(rows)} pictures are missing, first {missing[0]}; restore them"
+        )
+    found = {row.token for row in rows}
+    if len(found) < 2:
+        raise InputError(
+            f"{data}: holds {sorted(found) or 'no class'}; a classifier needs at least two classes"
+        )
+    return rows
+
+
+def load_hand(row: HandRow) -> LabelledHand:
+    """Read a row's picture and keep the hand with what stands around it, at most `KEPT_PIXELS` wide."""
+    image = read_picture(row.path)
+    rows, columns = image.shape[:2]
+    x, y, width, height = row.box or (0, 0, columns, rows)
+    if x >= columns or y >= rows or x + width <= 0 or y + height <= 0:
+        raise InputError(
+            f"{row.path}: box {(x, y, width, height)} lies outside its {columns} × {rows} pixels; correct it"
+        )
+    reach = 0.5 * KEPT_REACH * max(width, height)
+    centre_x, centre_y = x + width / 2, y + height / 2
+    left, top = max(0, int(centre_x - reach)), max(0, int(centre_y - reach))
+    kept = image[top : int(centre_y + reach) + 1, left : int(centre_x + reach) + 1]
+    scale = min(1.0, KEPT_PIXELS / max(kept.shape[:2]))
+    if scale < 1.0:
+        kept = np.asarray(cv2.resize(kept, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8)
+    box = (
+        round((x - left) * scale),
+        round((y - top) * scale),
+        max(1, round(width * scale)),
+        max(1, round(height * scale)),
+    )
+    landmarks = None if row.landmarks is None else ((row.landmarks - (left, top)) * scale).astype(np.float32)
+    return LabelledHand(kept, box, row.side, row.token, row.source, landmarks)
+
+
+def _folder_rows(folder: Path, classes: Sequence[str]) -> list[HandRow]:
+    names = sorted(entry.name for entry in folder.iterdir() if entry.is_dir())
+    unknown = [name for name in names if name not in classes]
+    if unknown:
+        raise InputError(f"{folder}: folder {unknown[0]!r} is no class; known are {', '.join(classes)}")
+    return [
+        HandRow(path, name, source=f"{folder.name}/{path.parent.relative_to(folder / name)}")
+        for name in names
+        for path in sorted((folder / name).rglob("*"))
+        if is_picture_name(path)
+    ]
+
+
+def _manifest_rows(manifest: Path, classes: Sequence[str]) -> list[HandRow]:
+    return [_manifest_row(manifest, number, row, classes) for number, row in _read_table(manifest)]
+
+
+def _read_table(manifest: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    try:
+        with manifest.open(encoding="utf-8", newline="") as stream:
+            reader = csv.DictReader(stream)
+            lacking = {"path", "token"} - set(reader.fieldnames or ())
+            if lacking:
+                raise InputError(
+                    f"{manifest}: has no column {', '.join(sorted(lacking))}; add it to the header"
+                )
+            for row in reader:
+                yield reader.line_num, row
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise InputError(
+            f"{manifest}: cannot be read as a CSV table ({reason}); give a manifest or a folder"
+        ) from error
+
+
+def _manifest_row(manifest: Path, line: int, row: dict[str, str], classes: Sequence[str]) -> HandRow:
+    place = f"{manifest}, line {line}"
+    if row["token"] not in classes:
+        raise InputError(f"{place}: token {row['token']!r} is no class; known are {', '.join(classes)}")
+    side = row.get("side") or "left"
+    if side not in ("left", "right"):
+        raise InputError(f"{place}: side {side!r}; it must be left or right")
+    landmarks = _numbers(place, "lm", row["lm"].split(";"), 42) if row.get("lm") else None
+    path = manifest.parent / row["path"]
+    return HandRow(
+        path=path,
+        token=row["token"],
+        source=row.get("set") or path.parent.name,
+        side=side,
+        box=_box(place, row),
+        landmarks=None if landmarks is None else np.asarray(landmarks, np.float32).reshape(21, 2),
+        licence=row.get("licence") or "none stated",
+    )
+
+
+def _box(place: str, row: dict[str, str]) -> Box | None:
+    if row.get("x"):
+        x, y, width, height = _numbers(
+            place, "x, y, w, h", [row.get(name) or "" for name in ("x", "y", "w", "h")], 4
+        )
+        box = round(x), round(y), round(width), round(height)
+    elif row.get("hx0"):
+        names = ("hx0", "hy0", "hx1", "hy1")
+        x0, y0, x1, y1 = _numbers(place, ", ".join(names), [row.get(name) or "" for name in names], 4)
+        box = grow_box(x0, y0, x1, y1, LANDMARK_MARGIN) if x1 > x0 and y1 > y0 else (0, 0, 0, 0)
+    else:
+        return None
+    if box[2] <= 0 or box[3] <= 0:
+        raise InputError(f"{place}: the box has no area; correct it")
+    return box
+
+
+def _numbers(place: str, name: str, texts: Sequence[str], count: int) -> list[float]:
+    try:
+        numbers = [float(text) for text in texts]
+    except ValueError as error:
+        raise InputError(f"{place}: column {name} holds no number ({error}); correct it") from error
+    if len(numbers) != count or not np.isfinite(numbers).all():
+        raise InputError(f"{place}: column {name} needs {count} finite numbers; correct it")
+    return numbers

@@ -1,0 +1,1 @@
+"""The selector of hands: pictures, trees, contour bank."""

@@ -1,0 +1,189 @@
+"""The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
+
+import json
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from lightgesture.errors import InputError
+from lightgesture.features.find.learned import Places
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector, save_selector
+from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.results.atomic import replacing
+from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
+from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
+from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
+from lightgesture.training.regions.bank import make_bank
+from lightgesture.training.regions.learned import fit_place_pairs, fit_places, look
+from lightgesture.training.regions.region_pictures import (
+    Material,
+    PictureSettings,
+    read_material,
+    variants,
+)
+from lightgesture.training.regions.trees import BoxedPicture, fit_pairs, fit_regions
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class RegionTraining:
+    """How much goes into the selector.
+
+    one_in: of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to
+    people and water they have not seen. composed: pictures for the nets and the classical trees of regions. unseen:
+    those composed of what is kept from the nets. pair_share: of all pictures for trees, those for pairs.
+    locator_steps, refiner_steps: of the optimiser.
+    """
+
+    one_in: int = 8
+    composed: int = 12000
+    unseen: int = 2000
+    pair_share: float = 0.4
+    locator_steps: int = 10000
+    refiner_steps: int = 8000
+    pictures: PictureSettings = field(default_factory=PictureSettings)
+
+
+def train_regions(
+    data: Path,
+    out: Path,
+    seed: int = 0,
+    jobs: int = 1,
+    without: LeftOut | None = None,
+    settings: RegionTraining | None = None,
+    progress: Progress = lambda _: None,
+) -> None:
+    """Train the selector and write it with its card (`out` with the suffix .json).
+
+    What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
+    when the file is written. Raises InputError, UsageError.
+    """
+    need_torch()
+    settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
+    folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
+    progress("reading whole frames and cutting out hands")
+    material = read_material(data, without, settings.pictures, seed)
+    for_nets, for_trees = material.parted(settings.one_in)
+    if not all((part.frames and part.empty and part.hands) for part in (for_nets, for_trees)):
+        raise InputError(f"{data}: too little is left to train on; leave out fewer sources")
+    progress("composing pictures")
+    composed = _compose(for_nets, settings.composed, seed + 1, jobs, folder / "composed.npy")
+    unseen = _compose(for_trees, settings.unseen, seed + 2, jobs, folder / "unseen.npy")
+    learned = _learned(for_nets, composed, folder, seed, settings, progress)
+    progress("fitting the trees that weigh both nets")
+    first, second = _tree_pictures(for_trees, unseen, settings.pair_share, seed)
+    places = fit_places(look(first, Places(*learned)), seed)
+    pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
+    progress("fitting the classical trees")
+    classical = _classical(data, for_nets, composed, second, without, seed)
+    save_selector(out, Selector(classical, LearnedParts(*learned, places, pairs)))
+    _write_card(out, seed, without, settings, material, time.monotonic() - started)
+
+
+def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
+    ingredients = Ingredients(material.hands, material.waters(), material.rooms())
+    return compose_pool(ingredients, count, seed, jobs, path)
+
+
+def _learned(
+    material: Material,
+    composed: list[BoxedPicture],
+    folder: Path,
+    seed: int,
+    settings: RegionTraining,
+    progress: Progress,
+) -> tuple[IntegerNetwork, IntegerNetwork]:
+    """Locator and refiner."""
+    from lightgesture.training.nets.locator import train_locator
+    from lightgesture.training.nets.locator_samples import LocatorSamples
+    from lightgesture.training.nets.refiner import train_refiner
+    from lightgesture.training.nets.refiner_samples import RefinerSamples
+    from lightgesture.training.regions.hard_regions import hard_regions
+
+    samples = LocatorSamples(material.frames, material.empty, composed)
+    locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
+    progress("searching for what the locator mistakes")
+    frames, empty, hard = (
+        hard_regions(part, locator) for part in (material.frames, material.empty, composed)
+    )
+    windows = RefinerSamples(frames, empty, hard)
+    return locator, train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
+
+
+def _tree_pictures(
+    material: Material, unseen: list[BoxedPicture], pair_share: float, seed: int
+) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
+    """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
+    rng = np.random.default_rng(seed)
+    single = [*material.empty, *unseen]
+    whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
+    parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
+    for place, index in enumerate(order):
+        part = parts[place < pair_share * len(order)]
+        if index < whole:
+            part.extend(variants(material.frames[index], rng))
+        else:
+            part.append(single[index - whole])
+    return parts
+
+
+def _classical(
+    data: Path,
+    material: Material,
+    composed: list[BoxedPicture],
+    for_pairs: list[BoxedPicture],
+    without: LeftOut,
+    seed: int,
+) -> ClassicalParts:
+    bank = make_bank(data, seed, without)
+
+    def region_pictures() -> Iterator[BoxedPicture]:
+        rng = np.random.default_rng(seed + 1)
+        for picture in material.frames:
+            yield from variants(picture, rng)
+        yield from material.empty
+        yield from composed[: len(composed) // 2]
+
+    regions = fit_regions(region_pictures(), bank, seed)
+    return ClassicalParts(regions, fit_pairs(for_pairs, regions, bank, seed), bank)
+
+
+def _write_card(
+    out: Path, seed: int, without: LeftOut, settings: RegionTraining, material: Material, seconds: float
+) -> None:
+    import sklearn
+    import torch
+
+    card = {
+        "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
+        "data": {
+            "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
+            "hands cut out of hands/train": len(material.hands),
+            "underwater frames without a hand": len(material.empty),
+            "composed pictures": settings.composed + settings.unseen,
+            "sets of negatives used": list(settings.pictures.negative_sets),
+            "kept from the nets, for the trees": f"one in {settings.one_in} sources",
+        },
+        CARD_KEY: without.to_card(),
+        "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
+        "the sequences of frames/subhi, webcam/val, hands/val",
+        "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
+        "limits": "bare hands in air; water, darkness and divers are composed; gloves were not seen",
+        "seed": seed,
+        "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
+        "seconds": round(seconds),
+        "peak_memory_mib": peak_memory_mib(),
+        "versions": {
+            "numpy": np.__version__,
+            "opencv": cv2.__version__,
+            "scikit-learn": sklearn.__version__,
+            "torch": str(torch.__version__),
+        },
+    }
+    with replacing(out.with_suffix(".json")) as temporary:
+        temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

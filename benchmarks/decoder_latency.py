@@ -19,7 +19,7 @@ from typing import NamedTuple
 from lightgesture.benchmarks.decoder_peers import Arguments, Step, statemachine_step, transitions_step
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.console import print_line
-from lightgesture.fsm import Decoder, Grammar, load_grammar
+from lightgesture.fsm import Decoder, Grammar, Sign, Signs, load_grammar
 
 RATE = 30.0
 SIGNED = (
@@ -60,7 +60,8 @@ def recorded(hold: int = 15) -> list[Shown]:
 
 def arguments(shown: Shown, frame: int) -> Arguments:
     """What the pipeline calls the decoder with; made before the clock starts."""
-    return shown.left, shown.right, frame / RATE, 0.9, 0.95, frame, shown.is_seen, shown.is_seen
+    left, right = Sign(shown.left, 0.9, seen=shown.is_seen), Sign(shown.right, 0.95, seen=shown.is_seen)
+    return Signs(left, right), frame / RATE, frame
 
 
 def our_step(grammar: Grammar) -> Step:

@@ -5,9 +5,9 @@ from typing import Any
 
 from lightgesture.fsm import Grammar
 from lightgesture.fsm.dwell import Dwell, Hold
-from lightgesture.fsm.events import Pair
+from lightgesture.fsm.signs import Shown, Signs
 
-Arguments = tuple[str | None, str | None, float, float, float, int, bool, bool]
+Arguments = tuple[Signs, float, int]
 """Those of `Decoder.step`, in its order."""
 
 Step = Callable[[*Arguments], object]
@@ -24,8 +24,8 @@ class Guarded:
         self._always = always
         self._dwell = Dwell(grammar.dwell.hold, 3)
         self._hold: Hold | None = None
-        self._idle: dict[Pair, Callable[[], object]] = {}
-        self._inside: dict[Pair, Callable[[], object]] = {}
+        self._idle: dict[Shown, Callable[[], object]] = {}
+        self._inside: dict[Shown, Callable[[], object]] = {}
 
     def ask(self, machine: object) -> None:
         """The machine whose methods have the words' names."""
@@ -35,15 +35,13 @@ class Guarded:
         ):
             asked.update((pair, getattr(machine, method(word))) for pair, word in words.items())
 
-    def step(
-        self, left: str | None, right: str | None, time_s: float, confidence: float, frame: int, is_idle: bool
-    ) -> object:
+    def step(self, signs: Signs, time_s: float, frame: int, is_idle: bool) -> object:
         """Show a frame to the dwell and, if it is time, ask the machine."""
-        pair = None if left is None or right is None else (left, right)
-        self._hold = self._dwell.process(pair, confidence, frame, time_s, time_s)
-        if pair is None or (self._hold is None and not self._always):
+        shown = signs.shown
+        self._hold = self._dwell.process(shown, signs.confidence, frame, time_s, time_s)
+        if shown is None or (self._hold is None and not self._always):
             return None
-        move = (self._idle if is_idle else self._inside).get(pair)
+        move = (self._idle if is_idle else self._inside).get(shown)
         return None if move is None else move()
 
     def is_held(self) -> bool:
@@ -65,19 +63,7 @@ def edges(grammar: Grammar) -> Iterator[tuple[str, int, int]]:
 
 def _step(guarded: Guarded, is_idle: Callable[[], bool]) -> Step:
     """What is called as the decoder's own `step` is."""
-
-    def call(
-        left: str | None,
-        right: str | None,
-        time_s: float,
-        confidence: float,
-        _: float,
-        frame: int,
-        *_seen: bool,
-    ) -> object:
-        return guarded.step(left, right, time_s, confidence, frame, is_idle())
-
-    return call
+    return lambda signs, time_s, frame: guarded.step(signs, time_s, frame, is_idle())
 
 
 def transitions_step(grammar: Grammar, always: bool = True) -> Step:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from lightgesture.benchmarks.suite_scenarios import LAND_LIST, WATER_LIST
-from lightgesture.fsm import Decoder, Grammar
+from lightgesture.fsm import Decoder, Grammar, Sign, Signs
 from lightgesture.fsm.settings import Rule
 
 SENTENCES = tuple(sentence for sentence, _ in (*WATER_LIST, *LAND_LIST))
@@ -150,9 +150,10 @@ def sign(
             first, current = frame, index
         seen = [hand.read(true) for hand, true in zip(hands, (left, right), strict=True)]
         chances = [rng.uniform(*(settings.wrong if is_wrong else settings.right)) for _, is_wrong in seen]
-        events = decoder.step(
-            seen[0][0], seen[1][0], frame / settings.rate, chances[0], chances[1], frame, is_seen, is_seen
-        )
+        hands_shown = [
+            Sign(read, chance, seen=is_seen) for (read, _), chance in zip(seen, chances, strict=True)
+        ]
+        events = decoder.step(Signs(*hands_shown), frame / settings.rate, frame)
         for event in events:
             if event.type == "instruction":
                 issued.append(event.text)

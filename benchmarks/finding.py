@@ -19,7 +19,7 @@ from lightgesture.features.find.selector import SELECTORS, RegionStage, Selector
 from lightgesture.features.profile import ColourProfile
 from lightgesture.features.track.tracker import TrackStage
 from lightgesture.features.types import Box
-from lightgesture.hands.reading import ReadingStage
+from lightgesture.hands import Finder, HandReader, ReadingStage
 from lightgesture.models import NONE
 from lightgesture.pipeline import Pipeline
 from lightgesture.training.datasets import Sample, group_samples, is_sequence
@@ -44,29 +44,25 @@ class Stages:
     """What makes the stages of a pipeline, None for the product's own."""
 
     colour: Callable[[], ColourStage] | None = None
-    regions: Callable[[], RegionStage] | None = None
+    regions: Callable[[], Finder] | None = None
     tracks: Callable[[], TrackStage] | None = None
 
 
-class FindingPipeline(Pipeline):
+def finding_pipeline(stages: Stages | None = None) -> Pipeline:
     """The product, except that nothing is read, and that single stages may be others."""
-
-    def __init__(self, stages: Stages | None = None) -> None:
-        super().__init__()
-        stages = stages or Stages()
-        self._reading = ReadingStage(NoReader())
-        if stages.colour is not None:
-            self._colour = stages.colour()
-        if stages.regions is not None:
-            self._regions = stages.regions()
-            self._tracks = TrackStage(selection=self._regions.settings)
-        if stages.tracks is not None:
-            self._tracks = stages.tracks()
+    stages = stages or Stages()
+    front = HandReader(
+        ReadingStage(NoReader()),
+        find=stages.regions() if stages.regions else None,
+        colour=stages.colour() if stages.colour else None,
+        track=stages.tracks,
+    )
+    return Pipeline(front)
 
 
 def variant(name: str, stages: Stages) -> PipelineMethod:
     """A method that finds with other stages."""
-    return PipelineMethod(name, lambda _: FindingPipeline(stages))
+    return PipelineMethod(name, lambda _: finding_pipeline(stages))
 
 
 def selector_method(

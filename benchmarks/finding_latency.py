@@ -11,14 +11,15 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from lightgesture.benchmarks.finding import FindingPipeline, Stages
+from lightgesture.benchmarks.finding import Stages, finding_pipeline
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.benchmarks.timing import Image, LatencySettings, RecordingClock, limited_threads
+from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.selector import RegionStage, SelectorName
-from lightgesture.features.types import Candidates
+from lightgesture.features.types import Box, Candidates
 from lightgesture.sources import DEFAULT_FPS
+from lightgesture.stage_clock import StageClock
 
 LITERT = "ai_edge_litert"
 """Module of the run-time; without it the nets run by NumPy."""
@@ -73,23 +74,22 @@ def without_litert() -> Iterator[None]:
         sys.modules.update(hidden)
 
 
-class TimedFinding(FindingPipeline):
-    """Finds hands without reading them; keeps the times of each frame and whether it was searched as a whole."""
+class WatchedRegions:
+    """A region stage that tells of each frame whether it was searched as a whole."""
 
-    def __init__(self, regions: RegionStage) -> None:
-        super().__init__(Stages(regions=lambda: regions))
-        self.restart_clock()
+    def __init__(self, stage: RegionStage) -> None:
+        self._stage = stage
+        self.settings = stage.settings
+        self.searches = 0
 
-    def restart_clock(self) -> None:
-        """Forget all times."""
-        self.clock = RecordingClock()
-        self._clock = self.clock
-        self.is_searched: list[bool] = []
+    def process(self, colour: ColourMap) -> Candidates:
+        """Search one frame."""
+        self.searches += 1
+        return self._stage.process(colour)
 
-    def _candidates(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
-        found = super()._candidates(colour, time_s)
-        self.is_searched.append(found[1])
-        return found
+    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+        """Look at predicted boxes."""
+        return self._stage.follow(colour, boxes)
 
 
 def open_stage(engine: Engine) -> RegionStage:
@@ -102,14 +102,20 @@ def open_stage(engine: Engine) -> RegionStage:
 
 def time_finding(frames: Sequence[Image], engine: Engine, settings: LatencySettings) -> list[dict[str, Cell]]:
     """Rows of one clip: whole frames that were searched and followed, then their stages."""
-    pipeline = TimedFinding(open_stage(engine))
+    regions = WatchedRegions(open_stage(engine))
+    pipeline = finding_pipeline(Stages(regions=lambda: regions))
+    is_searched: list[bool] = []
     shown = [frames[index % len(frames)] for index in range(settings.warm_up)] + [*frames] * settings.rounds
     for index, frame in enumerate(shown):
         if index == settings.warm_up:
-            pipeline.restart_clock()
+            pipeline.front.clock = StageClock()
+            is_searched.clear()
+        before = regions.searches
         pipeline.process(frame, index / DEFAULT_FPS)
-    searched = np.array(pipeline.is_searched)
-    parts = {name: np.array(pipeline.clock.times[name]) for name in PARTS}
+        is_searched.append(regions.searches > before)
+    searched = np.array(is_searched)
+    times = pipeline.front.clock.stages_ms
+    parts = {name: np.array(times[name]) for name in PARTS}
     whole = np.sum(list(parts.values()), axis=0)
     rows = []
     for name, chosen in ((SEARCHED, searched), (FOLLOWED, ~searched)):

@@ -1,6 +1,5 @@
 """Timing of calls and of the pipeline's stages, with a fixed number of threads and after a warm-up."""
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -44,35 +43,6 @@ class LatencySettings:
     starts: int = 5
 
 
-class RecordingClock(StageClock):
-    """A stage clock that keeps every time, in milliseconds."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.times: dict[str, list[float]] = defaultdict(list)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time one stage of the current frame."""
-        start = perf_counter()
-        with super().stage(name):
-            yield
-        self.times[name].append((perf_counter() - start) * 1e3)
-
-
-class TimedPipeline(Pipeline):
-    """The pipeline with a clock that keeps every time since `restart_clock`."""
-
-    def __init__(self, model: str) -> None:
-        super().__init__(model=model)
-        self.restart_clock()
-
-    def restart_clock(self) -> None:
-        """Forget all times."""
-        self.clock = RecordingClock()
-        self._clock = self.clock
-
-
 @contextmanager
 def limited_threads(count: int) -> Iterator[None]:
     """Give OpenCV and the linear algebra behind NumPy so many threads, and restore what was set before.
@@ -109,16 +79,17 @@ def time_calls(
 
 def time_pipeline(frames: Sequence[Image], model: str, settings: LatencySettings) -> Times:
     """Times of every stage and of whole frames of a stream, and of frames as single pictures."""
-    pipeline = TimedPipeline(model)
+    pipeline = Pipeline(model=model)
     seen = 0
 
     def process(frame: Image) -> None:
         nonlocal seen
         if seen == settings.warm_up:
-            pipeline.restart_clock()
+            pipeline.front.clock = StageClock()
         pipeline.process(frame, seen / DEFAULT_FPS)
         seen += 1
 
     whole = time_calls(process, frames, settings)
+    stages = {name: list(times) for name, times in pipeline.front.clock.stages_ms.items()}
     single = time_calls(pipeline.recognize, frames, settings)
-    return {**pipeline.clock.times, FRAME: whole, SINGLE: single}
+    return {**stages, FRAME: whole, SINGLE: single}

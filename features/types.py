@@ -71,7 +71,7 @@ class Candidates:
 class Track:
     """One hand followed through the frames.
 
-    number: grows by one at each birth, never used twice in a stream.
+    number: grows by one at each birth, never used twice in a stream; None in a picture on its own.
     side: the diver's own side, kept for the life of the track; only a guess is put right.
     box: position and size, source pixels: the region's own where it was seen, predicted where not.
     confidence: the selector's confidence in the region that last updated the track, 0 to 1.
@@ -82,7 +82,7 @@ class Track:
         on the confidence of what is read.
     """
 
-    number: int
+    number: int | None
     side: Side
     box: Box
     confidence: float

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from lightgesture.fsm.document import key_path
-from lightgesture.fsm.events import Pair
 from lightgesture.fsm.forms import Form, Vocabulary
 from lightgesture.fsm.grammar import Defect
 from lightgesture.fsm.schema import GrammarFile
+from lightgesture.fsm.signs import Pair
 
 
 def check_sentinels(content: GrammarFile, vocabulary: Vocabulary, defects: list[Defect]) -> None:

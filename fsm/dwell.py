@@ -10,8 +10,8 @@ wrong frames delay a sign and do not break it.
 import math
 from dataclasses import dataclass
 
-from lightgesture.fsm.events import Pair
 from lightgesture.fsm.settings import DwellSettings
+from lightgesture.fsm.signs import Shown
 
 FRAMES, EVIDENCE = "frames", "evidence"
 """Rules that are asked for by name here; what is neither is "seconds"."""
@@ -30,7 +30,7 @@ DOUBT = 1.0
 class Hold:
     """A pair that was held. frames: sightings of it; confidence: their mean, 0 to 1; first_*: the first one's."""
 
-    pair: Pair
+    pair: Shown
     frames: int
     confidence: float
     first_frame: int
@@ -53,27 +53,6 @@ class Dwell:
     stands for the time since the one before it.
     """
 
-    __slots__ = (
-        "_absent",
-        "_confidence_sum",
-        "_extent",
-        "_first_frame",
-        "_first_time_s",
-        "_frames",
-        "_is_absent",
-        "_longest_step",
-        "_need",
-        "_now_s",
-        "_start",
-        "_weighed",
-        "need",
-        "pair",
-        "release",
-        "spent",
-        "step",
-        "timed",
-    )
-
     def __init__(self, need: float, release: float, *, timed: bool = False, weighed: bool = False) -> None:
         tolerance = TOLERANCE_S if timed else 0.0
         self.need = need
@@ -91,8 +70,8 @@ class Dwell:
         pair: the one whose hold has begun and is not yet long enough. spent: the one that was read and not released.
         step: what the last frame stands for, in frames or seconds.
         """
-        self.pair: Pair | None = None
-        self.spent: Pair | None = None
+        self.pair: Shown | None = None
+        self.spent: Shown | None = None
         self.step = 1.0
         self._absent = 0.0
         self._is_absent = False
@@ -105,7 +84,7 @@ class Dwell:
         return self._extent / self.need
 
     def process(
-        self, pair: Pair | None, confidence: float, frame: int, time_s: float, now_s: float
+        self, pair: Shown | None, confidence: float, frame: int, time_s: float, now_s: float
     ) -> Hold | None:
         """The hold that became long enough in this frame, else None. now_s: seconds that never run back."""
         if self.timed:
@@ -116,18 +95,16 @@ class Dwell:
                 return None
             self._be_absent()
         if pair is None:
-            if self.pair is not None:
-                self._weaken(DOUBT)
+            self._weaken(DOUBT)
             return None
         if pair == self.pair:
             self._extent += self.step * confidence if self._weighed else self.step
             self._frames += 1
             self._confidence_sum += confidence
         else:
+            self._weaken(confidence)
             if self.pair is not None:
-                self._weaken(confidence)
-                if self.pair is not None:
-                    return None
+                return None
             self._begin(pair, confidence, frame, time_s)
         if self._extent < self._need:
             return None
@@ -160,11 +137,9 @@ class Dwell:
 
     def _hold_on(self, confidence: float) -> None:
         """The pair that was read is still there. In a run its absence must be unbroken; evidence weighs."""
-        if self._is_absent:
-            self._absent = max(0.0, self._absent - self.step * confidence) if self._weighed else 0.0
-            self._is_absent = self._absent > 0.0
-        if self.pair is not None:
-            self._weaken(confidence)
+        self._absent = max(0.0, self._absent - self.step * confidence) if self._weighed else 0.0
+        self._is_absent = self._absent > 0.0
+        self._weaken(confidence)
 
     def _be_absent(self) -> None:
         """The pair that was read is not there; for long enough, and it may be read again."""
@@ -179,7 +154,7 @@ class Dwell:
         if not self._weighed or self._extent <= 0.0:
             self.pair = None
 
-    def _begin(self, pair: Pair, confidence: float, frame: int, time_s: float) -> None:
+    def _begin(self, pair: Shown, confidence: float, frame: int, time_s: float) -> None:
         self.pair = pair
         self._extent = self.step * confidence if self._weighed else self._start
         self._frames = 1
@@ -187,7 +162,7 @@ class Dwell:
         self._first_frame = frame
         self._first_time_s = time_s
 
-    def _spend(self, pair: Pair) -> None:
+    def _spend(self, pair: Shown) -> None:
         self.pair = None
         self.spent = pair
         self._absent = 0.0

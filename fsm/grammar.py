@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from lightgesture.fsm.events import Pair
 from lightgesture.fsm.forms import Vocabulary
 from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.signs import Pair
 from lightgesture.fsm.table import Table
 
 

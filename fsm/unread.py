@@ -5,7 +5,7 @@ longer by its own hold. A sentence that went on after it would lack a word: "STO
 another instruction, and a valid one.
 """
 
-from lightgesture.fsm.events import Pair
+from lightgesture.fsm.signs import Shown
 
 
 class UnreadSigning:
@@ -17,18 +17,6 @@ class UnreadSigning:
     been shown does not count as long as it is there, for it may still become a word; once it is gone for `release`, it
     was a sign that nobody read.
     """
-
-    __slots__ = (
-        "_absent",
-        "_amount",
-        "_longest",
-        "_pair",
-        "_passage_s",
-        "_release",
-        "_seconds",
-        "_shown",
-        "_shown_s",
-    )
 
     def __init__(self, longest: float, release: float, passage_s: float) -> None:
         self._longest = longest
@@ -44,12 +32,12 @@ class UnreadSigning:
 
     def pass_over(self) -> None:
         """What was shown was long enough, and the diver was told what is wrong with it."""
-        self._pair: Pair | None = None
+        self._pair: Shown | None = None
         self._shown = 0.0
         self._shown_s = 0.0
         self._absent = 0.0
 
-    def process(self, pair: Pair | None, step: float, step_s: float) -> bool:
+    def process(self, pair: Shown | None, step: float, step_s: float) -> bool:
         """Take in a frame in which hands show `pair`; whether a sign has been missed.
 
         step, step_s: what the frame stands for, in the dwell's unit and in seconds.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
-from lightgesture.fsm import Decoder, Grammar
+from lightgesture.fsm import Decoder, Grammar, Signs
 from lightgesture.records import FrameRecord, Record
 from lightgesture.synth.scene import SceneFrame
 
@@ -34,6 +34,7 @@ def with_truth(
 def _events(decoder: Decoder, record: FrameRecord) -> Iterator[Record]:
     tokens = {hand.side: hand.token for hand in record.hands}
     time_s = record.time_s if record.time_s is not None else 0.0
-    for event in decoder.step(tokens.get("left"), tokens.get("right"), time_s, frame=record.frame):
+    signs = Signs.of_tokens(tokens.get("left"), tokens.get("right"))
+    for event in decoder.step(signs, time_s, frame=record.frame):
         if event.type != DISPLAY_ONLY:
             yield event

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Box, Image, Side
+from lightgesture.features.types import Box, Image, Track
 from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
 from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
@@ -31,22 +31,6 @@ class ReadingSettings:
     covered_share: float = 0.25
     edge_factor: float = 0.72
     crowded_factor: float = 0.9
-
-
-@dataclass(frozen=True, slots=True)
-class Sighting:
-    """A hand to be read.
-
-    boxes: its extents, source pixels, the likeliest first; at least one. track: number, None in single pictures.
-    certainty: factor on the confidence, 1 where the side is known. is_crowded: before a face, or another hand is in its
-    box.
-    """
-
-    side: Side
-    boxes: tuple[Box, ...]
-    track: int | None
-    certainty: float = 1.0
-    is_crowded: bool = False
 
 
 def is_crowded(
@@ -107,7 +91,7 @@ def clearest(rows: NDArray[np.float32], classes: Sequence[str]) -> int:
 
 
 class ReadingStage:
-    """Sightings of a frame -> hands with tokens."""
+    """Hands of a frame -> the same with their tokens."""
 
     def __init__(self, classifier: Classifier, settings: ReadingSettings | None = None) -> None:
         self._classifier = classifier
@@ -116,44 +100,58 @@ class ReadingStage:
     def process(
         self,
         image: Image,
-        sightings: Sequence[Sighting],
+        tracks: Sequence[Track],
+        face: tuple[float, float] | None = None,
         memory: ReadingMemory | None = None,
         time_s: float = 0.0,
     ) -> tuple[Hand, ...]:
-        """Read every sighting in one BGR frame, the diver's right hand first.
+        """Read every hand that is seen in one BGR frame, in the order of `tracks`.
 
-        memory: of the stream, whose frame at `time_s` seconds this is; None for a picture on its own.
+        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame at
+        `time_s` seconds this is; None for a picture on its own.
         """
         memory = memory or NO_MEMORY
-        memory.keep_only([item.track for item in sightings])
-        if not sightings:
+        memory.keep_only([track.number for track in tracks])
+        if not tracks:
             return ()
-        boxes = [box for item in sightings for box in item.boxes]
-        sides = [item.side for item in sightings for _ in item.boxes]
+        boxes = [box for track in tracks for box in (track.box, *track.alternatives)]
+        sides = [track.side for track in tracks for _ in range(1 + len(track.alternatives))]
         rows = self._classifier.probabilities(image, boxes, sides)
         hands = []
         first = 0
-        for item in sightings:
-            own = rows[first : first + len(item.boxes)]
-            first += len(item.boxes)
-            hands.append(self._read(image, item, own, memory, time_s))
+        for track in tracks:
+            last = first + 1 + len(track.alternatives)
+            others = [other.box for other in tracks if other is not track]
+            crowded = is_crowded(track.box, others, face, self._settings)
+            hands.append(
+                self._read(image, track, boxes[first:last], rows[first:last], crowded, memory, time_s)
+            )
+            first = last
         return tuple(hands)
 
     def _read(
-        self, image: Image, item: Sighting, rows: NDArray[np.float32], memory: ReadingMemory, time_s: float
+        self,
+        image: Image,
+        track: Track,
+        boxes: Sequence[Box],
+        rows: NDArray[np.float32],
+        crowded: bool,
+        memory: ReadingMemory,
+        time_s: float,
     ) -> Hand:
         """The hand in the extent in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
-        steady = memory.steady(item.track, rows[place], time_s)
-        box = item.boxes[place]
+        steady = memory.steady(track.number, rows[place], time_s)
+        box = boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(steady, classes, at_edge, item.is_crowded, self._settings)
+        token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)
         return Hand(
-            side=item.side,
+            side=track.side,
             token=token,
-            confidence=round(confidence * item.certainty, 4),
+            confidence=round(confidence * track.certainty, 4),
             box=box,
-            track=item.track,
+            track=track.number,
             reason=reason,
+            probabilities=dict(zip(classes, steady.tolist(), strict=True)),
         )

@@ -23,8 +23,8 @@ from lightgesture.features.find.selector_file import (
     save_selector,
 )
 from lightgesture.features.track.tracker import TrackStage
-from lightgesture.features.types import Candidates
-from lightgesture.hands.reading import ReadingStage, Sighting
+from lightgesture.features.types import Candidates, Track
+from lightgesture.hands import ReadingStage
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
 
 
@@ -47,7 +47,7 @@ def _scene():
 def test_the_first_extent_is_kept_and_nothing_is_read():
     stage = ReadingStage(NoReader())
     boxes = ((5, 6, 30, 40), (0, 0, 60, 80))
-    (hand,) = stage.process(np.zeros((90, 90, 3), np.uint8), [Sighting("left", boxes, 3)])
+    (hand,) = stage.process(np.zeros((90, 90, 3), np.uint8), [Track(3, "left", boxes[0], 0.9, 0, boxes[1:])])
     assert (hand.box, hand.token, hand.side, hand.track) == (boxes[0], None, "left", 3)
 
 

@@ -24,6 +24,7 @@ from lightgesture.benchmarks.finding_latency import (
     without_litert,
 )
 from lightgesture.benchmarks.timing import LatencySettings
+from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector_file import load_learned
 from lightgesture.features.net.reference import NumpyRunner
 from lightgesture.features.net.runner import Network
@@ -67,7 +68,7 @@ def test_without_the_run_time_the_nets_run_by_numpy():
 
 def test_both_run_times_find_the_same(frames):
     pytest.importorskip(LITERT)
-    colour = finding_latency.TimedFinding(open_stage(Engine("learned")))._colour.process(frames[0])
+    colour = ColourStage().process(frames[0])
     found = [open_stage(Engine("learned", uses)).process(colour) for uses in (True, False)]
     first, second = ([region.box for region in one.regions] for one in found)
     assert len(first) >= 2

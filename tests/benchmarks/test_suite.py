@@ -15,7 +15,7 @@ from lightgesture.benchmarks.suite_cache import fetch_clip
 from lightgesture.benchmarks.suite_scenarios import LAND, NEGATIVE, REAL, SIZE, WATER, Scenario
 from lightgesture.benchmarks.suite_tables import all_tables
 from lightgesture.errors import UsageError
-from lightgesture.fsm import Decoder, load_grammar
+from lightgesture.fsm import Decoder, Signs, load_grammar
 
 
 class Oracle:
@@ -33,7 +33,7 @@ class Oracle:
         assert image.shape == (48, 64, 3)
         labels = () if self._is_blind else self.labels[self._index]
         tokens = {label.side: label.token for label in labels}
-        self._events += self._decoder.step(tokens.get("left"), tokens.get("right"), time_s)
+        self._events += self._decoder.step(Signs.of_tokens(tokens.get("left"), tokens.get("right")), time_s)
         self._index += 1
         return [Reading(label.box, label.side, label.token, 1 + (label.side == "left")) for label in labels]
 

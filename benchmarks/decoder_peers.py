@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from lightgesture.fsm import Grammar
-from lightgesture.fsm.dwell import Dwell, Hold
+from lightgesture.fsm.rules.dwell import Dwell, Hold
 from lightgesture.fsm.signs import Shown, Signs
 
 Arguments = tuple[Signs, float, int]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from lightgesture.benchmarks.suite_scenarios import LAND_LIST, WATER_LIST
 from lightgesture.fsm import Decoder, Grammar, Sign, Signs
-from lightgesture.fsm.settings import Rule
+from lightgesture.fsm.language.settings import Rule
 
 SENTENCES = tuple(sentence for sentence, _ in (*WATER_LIST, *LAND_LIST))
 """The 50 sentences of the suite."""

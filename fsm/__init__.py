@@ -2,8 +2,8 @@
 
 from lightgesture.fsm.decoder import Decoder
 from lightgesture.fsm.events import Event, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
-from lightgesture.fsm.load import inspect_grammar, load_grammar
+from lightgesture.fsm.language.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.language.load import inspect_grammar, load_grammar
 from lightgesture.fsm.signs import UNSEEN, Pair, Shown, Sign, Signs
 
 __all__ = [

@@ -2,13 +2,13 @@
 
 from typing import Self
 
-from lightgesture.fsm.dwell import make_dwell
 from lightgesture.fsm.events import Event, Growth
-from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter, Timeline
+from lightgesture.fsm.rules.dwell import make_dwell
+from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.signs import Signs
-from lightgesture.fsm.unread import UnreadSigning
 
 
 class Decoder:

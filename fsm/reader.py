@@ -1,14 +1,14 @@
 """What held signs do to the sentence that is being signed."""
 
-from lightgesture.fsm.dwell import Hold
 from lightgesture.fsm.events import Growth
-from lightgesture.fsm.forms import MENU, Form, Item, spell
-from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.language.forms import MENU, Form, Item, spell
+from lightgesture.fsm.language.grammar import Grammar
+from lightgesture.fsm.language.table import Arguments, bind
 from lightgesture.fsm.reporter import Reporter, Timeline
+from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.sentence import Sentence, name_expected, needs_confirmation, objection
 from lightgesture.fsm.signs import Shown
-from lightgesture.fsm.table import Arguments, bind
-from lightgesture.fsm.unread import UnreadSigning
 
 IDLE = "idle"
 COLLECTING = "collecting"

@@ -2,11 +2,11 @@
 
 import math
 
-from lightgesture.fsm.dwell import Hold
 from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.forms import Form
+from lightgesture.fsm.language.forms import Form
+from lightgesture.fsm.language.table import Arguments
+from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.sentence import Sentence
-from lightgesture.fsm.table import Arguments
 
 DISPLAY_INTERVAL_S = 0.2
 """Shortest time between two `state` records while a hold grows, seconds: five a second."""

@@ -5,7 +5,7 @@ from dataclasses import asdict
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Decoder, Event, Grammar, Signs, inspect_grammar
-from lightgesture.fsm.forms import is_digit, split_carrier
+from lightgesture.fsm.language.forms import is_digit, split_carrier
 
 Path = str | None
 

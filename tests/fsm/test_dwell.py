@@ -3,7 +3,7 @@
 import pytest
 
 from lightgesture.fsm import Decoder, Signs
-from lightgesture.fsm.dwell import Dwell, release_frames
+from lightgesture.fsm.rules.dwell import Dwell, release_frames
 
 
 def held(dwell: Dwell, pattern: str) -> list[int]:

@@ -3,8 +3,8 @@
 import pytest
 
 from lightgesture.fsm import Decoder, Signs, load_grammar
-from lightgesture.fsm.dwell import Dwell, make_dwell
-from lightgesture.fsm.settings import DwellSettings
+from lightgesture.fsm.language.settings import DwellSettings
+from lightgesture.fsm.rules.dwell import Dwell, make_dwell
 
 A, B = ("a", "a"), ("b", "b")
 RATES = (10, 30, 60)

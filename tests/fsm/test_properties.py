@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
-from lightgesture.fsm.forms import spell
+from lightgesture.fsm.language.forms import spell
 
 GRAMMAR = load_grammar()
 TOKENS = st.sampled_from([*GRAMMAR.tokens, None])

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from lightgesture.fsm import Decoder, GrammarError, Signs, load_grammar
-from lightgesture.fsm.forms import FormError, Vocabulary, parse_form
-from lightgesture.fsm.table import compile_table
+from lightgesture.fsm.language.forms import FormError, Vocabulary, parse_form
+from lightgesture.fsm.language.table import compile_table
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "grammars" / "repeat.toml"
 WORDS = Vocabulary.of(["STOP", "GO", "A", "B", "END", "0", "1", "P 1", "P 2"], "AND")

@@ -3,8 +3,8 @@
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import spell
+from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.sentence import Sentence
 
 HOLD = Hold(pair=("a", "a"), frames=3, confidence=0.9, first_frame=4, first_time_s=0.1)

@@ -5,7 +5,7 @@ from itertools import product
 import pytest
 
 from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
-from lightgesture.fsm.unread import UnreadSigning
+from lightgesture.fsm.rules.unread import UnreadSigning
 
 HOLD = 15
 SIGNED = "STOP HOVER 3 AND 5 GO"

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from lightgesture.fsm.forms import MENU, Form, FormError, Vocabulary, split_carrier
+from lightgesture.fsm.language.forms import MENU, Form, FormError, Vocabulary, split_carrier
 
 MAX_TRANSITIONS = 65536
 """Most transitions of a table, so that a hostile file takes neither long nor much memory."""

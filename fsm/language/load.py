@@ -4,9 +4,9 @@ import os
 from pathlib import Path
 from typing import Any
 
-from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.language.grammar import Defect, Grammar, GrammarError
 
-BUNDLED = Path(__file__).with_name("grammar.toml")
+BUNDLED = Path(__file__).resolve().parents[1] / "grammar.toml"
 """The grammar that comes with the package."""
 
 MAX_BYTES = 1 << 20
@@ -21,7 +21,7 @@ def load_grammar(path: str | os.PathLike[str] | None = None) -> Grammar:
     file = os.fsdecode(BUNDLED if path is None else path)
     document = _parse(_read(file), file)
     # pydantic takes longer to import than everything else here, and only files need it
-    from lightgesture.fsm.build import build
+    from lightgesture.fsm.language.build import build
 
     return build(document, file)
 
@@ -33,7 +33,7 @@ def inspect_grammar(path: str | os.PathLike[str] | None = None) -> tuple[Grammar
     """
     file = os.fsdecode(BUNDLED if path is None else path)
     document = _parse(_read(file), file)
-    from lightgesture.fsm.build import inspect
+    from lightgesture.fsm.language.build import inspect
 
     return inspect(document, file)
 

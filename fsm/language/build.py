@@ -3,15 +3,21 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lightgesture.fsm.checks import check_control, check_limits, check_parameters, check_sentinels, check_use
-from lightgesture.fsm.document import key_path, parse_document
-from lightgesture.fsm.forms import MENU, SELECT, Form, FormError, Item, Vocabulary, parse_form
-from lightgesture.fsm.frames import check_frame
-from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
-from lightgesture.fsm.schema import GrammarFile
-from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.checks import (
+    check_control,
+    check_frame,
+    check_limits,
+    check_parameters,
+    check_sentinels,
+    check_use,
+)
+from lightgesture.fsm.language.document import key_path, parse_document
+from lightgesture.fsm.language.forms import MENU, SELECT, Form, FormError, Item, Vocabulary, parse_form
+from lightgesture.fsm.language.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.language.schema import GrammarFile
+from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.table import Table, compile_table, walk
 from lightgesture.fsm.signs import Pair
-from lightgesture.fsm.table import Table, compile_table, walk
 
 
 def build(document: dict[str, Any], file: str) -> Grammar:

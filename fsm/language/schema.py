@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-from lightgesture.fsm.settings import DwellSettings, Limits, Rule
+from lightgesture.fsm.language.settings import DwellSettings, Limits, Rule
 
 MAX_HOLD = 1000
 """Longest hold that a file may ask for, frames: 16 s at 60 frames a second."""

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from lightgesture.fsm.forms import Vocabulary
-from lightgesture.fsm.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.forms import Vocabulary
+from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.table import Table
 from lightgesture.fsm.signs import Pair
-from lightgesture.fsm.table import Table
 
 
 class Defect(NamedTuple):

@@ -10,7 +10,7 @@ wrong frames delay a sign and do not break it.
 import math
 from dataclasses import dataclass
 
-from lightgesture.fsm.settings import DwellSettings
+from lightgesture.fsm.language.settings import DwellSettings
 from lightgesture.fsm.signs import Shown
 
 FRAMES, EVIDENCE = "frames", "evidence"

@@ -7,8 +7,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from lightgesture.fsm.grammar import Defect
-from lightgesture.fsm.schema import TABLES, GrammarFile
+from lightgesture.fsm.language.grammar import Defect
+from lightgesture.fsm.language.schema import TABLES, GrammarFile
 
 _EXPECTED = {
     "string_type": ("is no text", "write it in quotes"),

@@ -17,7 +17,7 @@ from lightgesture.benchmarks.shared_parts import shared_parts
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.profile import ColourProfile
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Box
 from lightgesture.hands.reading import ReadingStage
 from lightgesture.models import NONE
@@ -45,7 +45,7 @@ class Stages:
 
     colour: Callable[[], ColourStage] | None = None
     regions: Callable[[], RegionStage] | None = None
-    tracks: Callable[[], TrackStage] | None = None
+    tracks: Callable[[], Tracker] | None = None
 
 
 class FindingPipeline(Pipeline):
@@ -59,7 +59,7 @@ class FindingPipeline(Pipeline):
             self._colour = stages.colour()
         if stages.regions is not None:
             self._regions = stages.regions()
-            self._tracks = TrackStage(selection=self._regions.settings)
+            self._tracks = Tracker(selection=self._regions.settings)
         if stages.tracks is not None:
             self._tracks = stages.tracks()
 

@@ -65,27 +65,3 @@ class Candidates:
     def axis(self) -> float | None:
         """x of the axis of the diver's body, source pixels; None where no face is seen."""
         return None if self.face is None else self.face[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Track:
-    """One hand followed through the frames.
-
-    number: grows by one at each birth, never used twice in a stream.
-    side: the diver's own side, kept for the life of the track; only a guess is put right.
-    box: position and size, source pixels: the region's own where it was seen, predicted where not.
-    confidence: the selector's confidence in the region that last updated the track, 0 to 1.
-    missed: frames since the last matching region, 0 when seen now. Where it is above 0 there may be anything in the
-        box, and no hand may be read from it.
-    alternatives: those of the region that was seen now, else none.
-    certainty: 0 to 1, how sure the side is: 1 where both hands were seen together, less for a lone hand. A factor
-        on the confidence of what is read.
-    """
-
-    number: int
-    side: Side
-    box: Box
-    confidence: float
-    missed: int
-    alternatives: tuple[Box, ...] = ()
-    certainty: float = 1.0

@@ -12,7 +12,7 @@ from lightgesture.features.find.selector import RegionStage, SelectorName, choos
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.profile import load_profile
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates, Image
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.hands.memory import memory_for_hold
@@ -72,7 +72,7 @@ class Pipeline:
     def _begin(self, source: str | None, debug: PictureSink | None) -> None:
         """Everything that remembers the stream."""
         self._source, self._debug = source, debug
-        self._tracks = TrackStage(selection=self._regions.settings)
+        self._tracks = Tracker(selection=self._regions.settings)
         self._decoder = Decoder(
             self._grammar, hold=self._hold, hold_seconds=self._hold_seconds, source=source
         )
@@ -100,7 +100,7 @@ class Pipeline:
         with self._clock.stage("regions"):
             candidates, is_whole = self._candidates(colour, time_s)
         with self._clock.stage("tracks"):
-            tracks = self._tracks.process(candidates, time_s, whole=is_whole)
+            tracks = self._tracks.update(candidates, time_s, is_whole)
         with self._clock.stage("classify"):
             # A track that was not seen now has a predicted box, and whatever is in it is no evidence.
             seen = [track for track in tracks if track.missed == 0]
@@ -134,8 +134,8 @@ class Pipeline:
     def _candidates(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
         """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
         what it should."""
-        followed = self._regions.follow(colour, self._tracks.predictions(time_s))
-        if followed is not None and self._tracks.explains(followed, time_s):
+        followed = self._regions.follow(colour, self._tracks.predict(time_s))
+        if followed is not None and self._tracks.explains(followed):
             return followed, False
         return self._regions.process(colour), True
 

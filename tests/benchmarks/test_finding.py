@@ -22,7 +22,7 @@ from lightgesture.features.find.selector_file import (
     load_learned,
     save_selector,
 )
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates
 from lightgesture.hands.reading import ReadingStage, Sighting
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
@@ -76,7 +76,7 @@ def test_every_stream_has_tracks_of_its_own():
     made = []
 
     def tracks():
-        made.append(TrackStage())
+        made.append(Tracker())
         return made[-1]
 
     method = variant("tracks", Stages(tracks=tracks))

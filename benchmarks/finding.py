@@ -17,7 +17,7 @@ from lightgesture.benchmarks.shared_parts import shared_parts
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.profile import ColourProfile
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Box
 from lightgesture.hands import Finder, HandReader, ReadingStage
 from lightgesture.models import NONE
@@ -45,7 +45,7 @@ class Stages:
 
     colour: Callable[[], ColourStage] | None = None
     regions: Callable[[], Finder] | None = None
-    tracks: Callable[[], TrackStage] | None = None
+    tracks: Callable[[], Tracker] | None = None
 
 
 def finding_pipeline(stages: Stages | None = None) -> Pipeline:

@@ -89,7 +89,8 @@ def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegio
         one = candidates.regions[0]
         axis = candidates.source_size[0] / 2 if candidates.axis is None else candidates.axis
         side = side_of_axis(one.box, axis)
-        return [replace(one, side=side, confidence=one.confidence * settings.alone_confidence)]
+        sure = settings.alone_confidence
+        return [replace(one, side=side, confidence=one.confidence * sure, certainty=sure)]
     return []
 
 

@@ -11,8 +11,9 @@ from lightgesture.features.find.selector import RegionStage, choose
 from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
-from lightgesture.features.track.tracker import TrackStage
-from lightgesture.features.types import Box, Candidates, Image, Track
+from lightgesture.features.track.state import Track
+from lightgesture.features.track.tracker import Tracker
+from lightgesture.features.types import Box, Candidates, Image
 from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import UNSEEN, Sign, Signs
 from lightgesture.hands.memory import ReadingMemory
@@ -50,7 +51,7 @@ class HandReader(FrontEnd):
         *,
         find: Finder | None = None,
         colour: ColourStage | None = None,
-        track: Callable[[], TrackStage] | None = None,
+        track: Callable[[], Tracker] | None = None,
         memory: Callable[[], ReadingMemory] = ReadingMemory,
         mirrored: bool = False,
     ) -> None:
@@ -58,7 +59,7 @@ class HandReader(FrontEnd):
         self._read = read
         self._find: Finder = find or RegionStage()
         self._colour = colour or ColourStage()
-        self._make_track = track or (lambda: TrackStage(selection=self._find.settings))
+        self._make_track = track or (lambda: Tracker(selection=self._find.settings))
         self._make_memory = memory
         self._mirrored = mirrored
         self._begin()
@@ -84,7 +85,7 @@ class HandReader(FrontEnd):
         self.clock.lap("colour")
         candidates, is_whole = self._search(colour, time_s)
         self.clock.lap("regions")
-        self._tracks = self._track.process(candidates, time_s, whole=is_whole)
+        self._tracks = self._track.update(candidates, time_s, whole=is_whole)
         self.clock.lap("tracks")
         # A track that was not seen now has a predicted box, and whatever is in it is no evidence.
         seen = [track for track in self._tracks if track.missed == 0]
@@ -97,7 +98,8 @@ class HandReader(FrontEnd):
         """The signs of both hands in a picture on its own."""
         upright, colour = self._look(image)
         self._candidates, self._tracks = self._find.process(colour), None
-        self._hands = self._read.process(upright, self._chosen(), self._candidates.face)
+        chosen = choose(self._candidates, self._find.settings)
+        self._hands = self._read.process(upright, chosen, self._candidates.face)
         return self._signs()
 
     def shown(self) -> dict[str, tuple[Any, ...]]:
@@ -127,29 +129,10 @@ class HandReader(FrontEnd):
     def _search(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
         """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
         what it should."""
-        followed = self._find.follow(colour, self._track.predictions(time_s))
-        if followed is not None and self._track.explains(followed, time_s):
+        followed = self._find.follow(colour, self._track.predict(time_s))
+        if followed is not None and self._track.explains(followed):
             return followed, False
         return self._find.process(colour), True
-
-    def _chosen(self) -> list[Track]:
-        """The hands of a picture on its own, as tracks that have no number."""
-        settings = self._find.settings
-        assert self._candidates is not None
-        chosen = choose(self._candidates, settings)
-        certainty = settings.alone_confidence if len(chosen) == 1 else 1.0
-        return [
-            Track(
-                number=None,
-                side=region.side or "right",
-                box=region.box,
-                confidence=region.confidence,
-                missed=0,
-                alternatives=region.alternatives,
-                certainty=certainty,
-            )
-            for region in chosen
-        ]
 
     def _signs(self) -> Signs:
         signs = {

@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.types import Candidates, Image, Track
+from lightgesture.features.track.state import Track
+from lightgesture.features.types import Candidates, Image
 from lightgesture.records import Hand
 
 _GREEN, _YELLOW, _RED, _WHITE = (60, 220, 60), (0, 220, 255), (60, 60, 255), (255, 255, 255)

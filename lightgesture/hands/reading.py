@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Box, Image, Track
+from lightgesture.features.types import Box, Image, Side
 from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
 from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
@@ -31,6 +32,35 @@ class ReadingSettings:
     covered_share: float = 0.25
     edge_factor: float = 0.72
     crowded_factor: float = 0.9
+
+
+class HandInView(Protocol):
+    """What a hand must have to be read: a track, or a region on its own, whose side is known."""
+
+    @property
+    def number(self) -> int | None:
+        """Of its track; None in a picture on its own."""
+        ...
+
+    @property
+    def side(self) -> Side | None:
+        """The diver's own."""
+        ...
+
+    @property
+    def box(self) -> Box:
+        """Its likeliest extent, source pixels."""
+        ...
+
+    @property
+    def alternatives(self) -> tuple[Box, ...]:
+        """Its other extents."""
+        ...
+
+    @property
+    def certainty(self) -> float:
+        """How sure the side is, 0 to 1."""
+        ...
 
 
 def is_crowded(
@@ -100,39 +130,37 @@ class ReadingStage:
     def process(
         self,
         image: Image,
-        tracks: Sequence[Track],
+        hands: Sequence[HandInView],
         face: tuple[float, float] | None = None,
         memory: ReadingMemory | None = None,
         time_s: float = 0.0,
     ) -> tuple[Hand, ...]:
-        """Read every hand that is seen in one BGR frame, in the order of `tracks`.
+        """Read every hand that is seen in one BGR frame, in the order of `hands`.
 
         face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame at
         `time_s` seconds this is; None for a picture on its own.
         """
         memory = memory or NO_MEMORY
-        memory.keep_only([track.number for track in tracks])
-        if not tracks:
+        memory.keep_only([hand.number for hand in hands])
+        if not hands:
             return ()
-        boxes = [box for track in tracks for box in (track.box, *track.alternatives)]
-        sides = [track.side for track in tracks for _ in range(1 + len(track.alternatives))]
+        boxes = [box for hand in hands for box in (hand.box, *hand.alternatives)]
+        sides = [hand.side or "right" for hand in hands for _ in range(1 + len(hand.alternatives))]
         rows = self._classifier.probabilities(image, boxes, sides)
-        hands = []
+        read = []
         first = 0
-        for track in tracks:
-            last = first + 1 + len(track.alternatives)
-            others = [other.box for other in tracks if other is not track]
-            crowded = is_crowded(track.box, others, face, self._settings)
-            hands.append(
-                self._read(image, track, boxes[first:last], rows[first:last], crowded, memory, time_s)
-            )
+        for hand in hands:
+            last = first + 1 + len(hand.alternatives)
+            others = [other.box for other in hands if other is not hand]
+            crowded = is_crowded(hand.box, others, face, self._settings)
+            read.append(self._read(image, hand, boxes[first:last], rows[first:last], crowded, memory, time_s))
             first = last
-        return tuple(hands)
+        return tuple(read)
 
     def _read(
         self,
         image: Image,
-        track: Track,
+        hand: HandInView,
         boxes: Sequence[Box],
         rows: NDArray[np.float32],
         crowded: bool,
@@ -142,16 +170,16 @@ class ReadingStage:
         """The hand in the extent in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
-        steady = memory.steady(track.number, rows[place], time_s)
+        steady = memory.steady(hand.number, rows[place], time_s)
         box = boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
         token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)
         return Hand(
-            side=track.side,
+            side=hand.side or "right",
             token=token,
-            confidence=round(confidence * track.certainty, 4),
+            confidence=round(confidence * hand.certainty, 4),
             box=box,
-            track=track.number,
+            track=hand.number,
             reason=reason,
             probabilities=dict(zip(classes, steady.tolist(), strict=True)),
         )

@@ -1,5 +1,7 @@
 """The real stages joined up, on drawn frames: records, sizes, sides and clocks."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from lightgesture import Pipeline
 from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.settings import LEARNED
-from lightgesture.features.types import Candidates, HandRegion, Track
+from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
@@ -125,7 +127,7 @@ def test_the_clearest_extent_is_read():
     rows = [[0.1, 0.2, 0.7], [0.05, 0.9, 0.05], [0.6, 0.2, 0.2]]
     stage = ReadingStage(FakeClassifier(rows))
     boxes = ((10, 10, 30, 60), (10, 10, 30, 40), (12, 12, 20, 20))
-    (hand,) = stage.process(_noise(), [track("left", *boxes, number=7)])
+    (hand,) = stage.process(_noise(), [hand_of("left", *boxes, number=7)])
     assert (hand.token, hand.box, hand.track, hand.reason) == ("5", boxes[1], 7, None)
     assert clearest(np.array(rows, np.float32), CLASSES) == 1
 
@@ -204,13 +206,13 @@ def test_a_frame_runs_in_one_thread_of_linear_algebra_and_gives_the_others_back(
 
 def test_an_uncertain_side_lowers_the_confidence():
     stage = ReadingStage(FakeClassifier([[1.0, 0.0, 0.0]]))
-    (hand,) = stage.process(_noise(), [track("left", (10, 10, 30, 60), certainty=0.8)])
+    (hand,) = stage.process(_noise(), [hand_of("left", (10, 10, 30, 60), certainty=0.8)])
     assert hand.confidence == pytest.approx(0.8)
 
 
 def test_each_hand_is_read_from_its_own_rows():
     classifier = FakeClassifier([[0.9, 0.1, 0.0], [0.1, 0.8, 0.1], [0.2, 0.7, 0.1]])
-    first, second = track("right", (1, 1, 9, 9)), track("left", (90, 9, 9, 9), (88, 8, 9, 9))
+    first, second = hand_of("right", (1, 1, 9, 9)), hand_of("left", (90, 9, 9, 9), (88, 8, 9, 9))
     hands = ReadingStage(classifier).process(_noise(), [first, second])
     assert [hand.token for hand in hands] == ["0", "5"]
     assert classifier.asked[0][1] == ["right", "left", "left"]
@@ -273,8 +275,8 @@ class FakeRegions:
         return None
 
 
-def track(side, box, *alternatives, number=1, certainty=1.0):
-    return Track(number, side, box, 0.9, 0, alternatives, certainty)
+def hand_of(side, box, *alternatives, number=1, certainty=1.0):
+    return SimpleNamespace(side=side, box=box, alternatives=alternatives, number=number, certainty=certainty)
 
 
 class Recording(FrontEnd):

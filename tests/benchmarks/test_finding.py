@@ -22,8 +22,8 @@ from lightgesture.features.find.selector_file import (
     load_learned,
     save_selector,
 )
-from lightgesture.features.track.tracker import TrackStage
-from lightgesture.features.types import Candidates, Track
+from lightgesture.features.track.tracker import Tracker
+from lightgesture.features.types import Candidates
 from lightgesture.hands import ReadingStage
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
 
@@ -47,8 +47,11 @@ def _scene():
 def test_the_first_extent_is_kept_and_nothing_is_read():
     stage = ReadingStage(NoReader())
     boxes = ((5, 6, 30, 40), (0, 0, 60, 80))
-    (hand,) = stage.process(np.zeros((90, 90, 3), np.uint8), [Track(3, "left", boxes[0], 0.9, 0, boxes[1:])])
-    assert (hand.box, hand.token, hand.side, hand.track) == (boxes[0], None, "left", 3)
+    (hand,) = stage.process(
+        np.zeros((90, 90, 3), np.uint8),
+        [HandRegion(boxes[0], np.zeros((0, 2), np.int32), "left", 0.9, boxes[1:])],
+    )
+    assert (hand.box, hand.token, hand.side, hand.track) == (boxes[0], None, "left", None)
 
 
 def test_other_stages_take_the_place_of_the_products(scene):
@@ -76,7 +79,7 @@ def test_every_stream_has_tracks_of_its_own():
     made = []
 
     def tracks():
-        made.append(TrackStage())
+        made.append(Tracker())
         return made[-1]
 
     method = variant("tracks", Stages(tracks=tracks))

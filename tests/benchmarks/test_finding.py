@@ -23,7 +23,7 @@ from lightgesture.features.find.selector_file import (
     save_selector,
 )
 from lightgesture.features.track.tracker import Tracker
-from lightgesture.features.types import Candidates
+from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.hands import ReadingStage
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
 

@@ -86,6 +86,6 @@ def _specs(args: argparse.Namespace) -> "dict[str, SceneSpec]":
             raise UsageError(f"{name}: another scene is named {stem} too and would overwrite it; rename one")
         try:
             specs[stem] = load_scene_spec(name)
-        except OSError as error:
-            raise UsageError(f"{name}: cannot be read ({error.strerror}); check the name") from error
+        except ValueError as error:
+            raise UsageError(str(error)) from None
     return specs

@@ -5,11 +5,8 @@ defaults.
 """
 
 import argparse
-import difflib
 import os
-import tomllib
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
@@ -18,6 +15,7 @@ from pydantic_core import ErrorDetails
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
+from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
 
 _PATHS = ("grammar", "profile", "out", "debug_dir", "model", "mavlink_map")
 _HOLDS = ("hold", "hold_seconds")
@@ -68,9 +66,12 @@ def read_config(path: str) -> dict[str, Any]:
     Keys are the options' names, with `_` or `-`; a relative path in it starts at the file's own folder.
     UsageError: it cannot be read, is no TOML, or has a wrong key or value.
     """
-    content = {key.replace("-", "_"): value for key, value in _read_toml(path).items()}
     try:
+        written = read_toml(path, "configuration", "docs/batch.md")
+        content = {key.replace("-", "_"): value for key, value in written.items()}
         DecodeSettings.model_validate(content, strict=True)
+    except TomlError as error:
+        raise UsageError(f"{path}: {error}") from None
     except ValidationError as error:
         raise UsageError(f"{path}: {_explain(error, str)}") from None
     _check_holds(content, f"{path}: ", str)
@@ -79,18 +80,6 @@ def read_config(path: str) -> dict[str, Any]:
         if key in content and content[key] not in _BUILT_IN_MODELS:
             content[key] = os.path.join(folder, content[key])
     return content
-
-
-def _read_toml(path: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read ({error.strerror}); name a TOML file") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: is no UTF-8 text; save the configuration as UTF-8") from None
-    except (ValueError, RecursionError) as error:  # TOML syntax is a ValueError too
-        reason = str(error) or "too deeply nested"
-        raise UsageError(f"{path}: is no valid TOML ({reason}); write lines such as hold = 10") from None
 
 
 def _check_holds(given: Mapping[str, Any], place: str, show: Callable[[str], str]) -> None:
@@ -115,12 +104,7 @@ def _explain(error: ValidationError, show: Any) -> str:
 def _explain_one(detail: ErrorDetails, show: Any) -> str:
     key = str(detail["loc"][0])
     if detail["type"] == "extra_forbidden":
-        return f"{key}: unknown key; {_suggest(key)}"
+        known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
+        return f"{key}: unknown key; {suggest_key(key, known)}"
     shown = repr(detail["input"])[:60]
     return f"{show(key)}: {detail['msg'].replace('Input should', 'should')}, not {shown}; change it"
-
-
-def _suggest(key: str) -> str:
-    known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
-    close = difflib.get_close_matches(key, known, n=1)
-    return f"did you mean '{close[0]}'?" if close else "known are " + ", ".join(known)

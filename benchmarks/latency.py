@@ -28,6 +28,7 @@ from lightgesture.cli import exit_status
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
+from lightgesture.results.atomic import replacing
 from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, read_frames
 
@@ -107,12 +108,8 @@ def describe_machine() -> dict[str, str | int | None]:
 
 def write_json(path: Path, content: object) -> None:
     """Write a JSON file, whole or not at all. UsageError: it cannot be written."""
-    temporary = path.with_name(path.name + ".part")
-    try:
+    with replacing(path) as temporary:
         temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another with --out") from error
 
 
 def run(args: argparse.Namespace) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
-from lightgesture.sources.pictures import to_bgr8
+from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.settings import STREAM, SourceOptions, StreamSettings
 
 NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
@@ -40,6 +40,7 @@ class CaptureStream:
         self._target, self._backend = target, backend
         self._parameters, self._wishes = list(parameters), wishes
         self._capture: cv2.VideoCapture | None = None
+        self._depth = depth_of(name)
 
     def __enter__(self) -> Self:
         try:
@@ -69,7 +70,7 @@ class CaptureStream:
         assert self._capture is not None
         try:
             is_read, image = self._capture.read()
-            return to_bgr8(image) if is_read else None
+            return self._depth.bgr8(image) if is_read else None
         except (cv2.error, ValueError) as error:
             raise InputError(f"{self.name}: sends what is no picture ({error})") from None
 

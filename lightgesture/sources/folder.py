@@ -8,7 +8,7 @@ from typing import Self
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.names import natural_key
-from lightgesture.sources.pictures import is_picture_name, read_picture
+from lightgesture.sources.pictures import depth_of, is_picture_name, read_picture
 
 
 class FrameFolder:
@@ -35,9 +35,10 @@ class FrameFolder:
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[InputError] = []
+        depth = depth_of(self.name)
         for index, file in enumerate(self._files):
             try:
-                image = read_picture(os.path.join(self.name, file))
+                image = read_picture(os.path.join(self.name, file), depth)
             except InputError as error:
                 left_out.append(error)
             else:

@@ -9,8 +9,9 @@ from typing import Self
 import cv2
 
 from lightgesture.errors import InputError
+from lightgesture.features.image import as_bgr8
 from lightgesture.frames import Frame
-from lightgesture.sources.pictures import is_picture_name, to_bgr8
+from lightgesture.sources.pictures import is_picture_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +91,7 @@ class VideoFile:
             return None
         # Microseconds are finer than any container's clock and hide the rounding of the division.
         time_s = round(self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000.0, 6)
-        return Frame(to_bgr8(image), index, time_s)
+        return Frame(as_bgr8(image), index, time_s)
 
     def _check_end(self, last: Frame) -> None:
         if self.frame_count is None or self._rate <= 0:

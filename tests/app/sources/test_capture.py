@@ -93,7 +93,7 @@ def test_no_camera_in_this_machine_is_an_input_error():
 def test_a_picture_of_a_kind_that_cannot_be_used(camera, monkeypatch):
     monkeypatch.setattr(FakeCapture, "pictures", [np.zeros((4, 4), np.float32)])
     with (
-        pytest.raises(InputError, match=r"sends what is no picture .holds float32 values"),
+        pytest.raises(InputError, match=r"sends what is no picture .frame of float32"),
         open_camera("0", SourceOptions()) as stream,
     ):
         list(stream)

@@ -10,7 +10,7 @@ import pytest
 from lightgesture.config.settings import DEFAULT_FPS
 from lightgesture.errors import InputError
 from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
-from lightgesture.sources.video import VideoFile, VideoSettings
+from lightgesture.sources.video import VideoFile
 
 
 def read_all(path, **options):
@@ -69,13 +69,14 @@ def test_video_that_ends_early_yields_what_there_is(make_video, name, fourcc):
     assert 10 < len(frames) < 50
 
 
-def test_lost_frames_within_the_settings_are_forgiven(make_video):
+@pytest.mark.parametrize("spared", [{"SPARE_S": 2.0}, {"SPARE_FRAMES": 50}])
+def test_lost_frames_within_what_is_spared_are_forgiven(make_video, monkeypatch, spared):
     path = make_video("a.avi", 60)
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2])
-    with VideoFile(str(path), VideoSettings(spare_s=2.0)) as source:
-        assert len(list(source)) < 50
-    with VideoFile(str(path), VideoSettings(spare_frames=50)) as source:
+    for name, value in spared.items():
+        monkeypatch.setattr(f"lightgesture.sources.video.{name}", value)
+    with VideoFile(str(path)) as source:
         assert len(list(source)) < 50
 
 

@@ -84,8 +84,5 @@ def _specs(args: argparse.Namespace) -> "dict[str, SceneSpec]":
         stem = Path(name).stem
         if stem in specs:
             raise UsageError(f"{name}: another scene is named {stem} too and would overwrite it; rename one")
-        try:
-            specs[stem] = load_scene_spec(name)
-        except ValueError as error:
-            raise UsageError(str(error)) from None
+        specs[stem] = load_scene_spec(name)
     return specs

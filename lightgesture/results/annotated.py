@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import cv2
 import numpy as np
@@ -72,8 +72,7 @@ class AnnotatedVideo:
         height, width = picture.shape[:2]
         self._size = width + width % 2, height + height % 2  # H.264 shares a colour between two by two pixels
         options = {"crf": str(QUALITY), "preset": PRESET}
-        added = self._container.add_stream(CODEC, NOMINAL_RATE, options=options)
-        stream = cast("VideoStream", added)
+        stream = self._container.add_stream(CODEC, NOMINAL_RATE, options=options)
         stream.width, stream.height = self._size
         stream.pix_fmt = "yuv420p"
         stream.codec_context.time_base = Fraction(1, TICKS_PER_S)

@@ -25,9 +25,11 @@ from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
 from lightgesture.cli import exit_status
+from lightgesture.config.parsers import positive
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
+from lightgesture.results.atomic import replacing
 from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, read_frames
 
@@ -107,12 +109,8 @@ def describe_machine() -> dict[str, str | int | None]:
 
 def write_json(path: Path, content: object) -> None:
     """Write a JSON file, whole or not at all. UsageError: it cannot be written."""
-    temporary = path.with_name(path.name + ".part")
-    try:
+    with replacing(path) as temporary:
         temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another with --out") from error
 
 
 def run(args: argparse.Namespace) -> int:
@@ -151,12 +149,6 @@ def _find_data(folder: str | None) -> Path | None:
         return None
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least 1")
-    return int(text)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(
@@ -167,7 +159,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--model", default="cnn", metavar="cnn|svm|PATH", help="classifier (default: cnn)")
     parser.add_argument("--out", metavar="FILE.json", help="write the figures and the machine here")
     parser.add_argument(
-        "--rounds", type=_count, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
+        "--rounds", type=positive, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
     )
     args = parser.parse_args(argv)
     return exit_status(lambda: run(args), "nothing was written")

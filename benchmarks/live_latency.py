@@ -111,11 +111,10 @@ def decode(address: str, settings: LiveLatencySettings) -> int:
     """What the other process does: decode the stream with a heartbeat after each frame."""
     from lightgesture.actions.live import run_live
     from lightgesture.config.settings import DecodeSettings
-    from lightgesture.live import LiveSettings
 
     options = DecodeSettings.model_validate({"json": True, "frames": True, "quiet": True})
     with native_messages_muted():
-        return run_live(address, options, live_settings=LiveSettings(heartbeat_s=settings.heartbeat_s))
+        return run_live(address, options, heartbeat_s=settings.heartbeat_s)
 
 
 def _end(child: "subprocess.Popen[str]") -> None:

@@ -24,12 +24,12 @@ from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.study_cli import (
     add_data_argument,
     add_pool_arguments,
-    positive,
     print_and_write,
     run_command,
     training_from,
 )
 from lightgesture.benchmarks.tables import Table
+from lightgesture.config.parsers import positive
 from lightgesture.console import say
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.vector import VectorSettings

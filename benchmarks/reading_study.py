@@ -16,15 +16,14 @@ from pathlib import Path
 from lightgesture.benchmarks.study_cli import (
     add_data_argument,
     add_pool_arguments,
-    positive,
     print_and_write,
     run_command,
     training_from,
-    whole,
 )
 from lightgesture.benchmarks.study_data import open_study
 from lightgesture.benchmarks.study_kinds import COUNTS, FOLDS, KINDS, STEPS
 from lightgesture.benchmarks.study_pools import POOLS
+from lightgesture.config.parsers import positive, whole
 from lightgesture.console import say
 from lightgesture.training.commands.train_cnn import PRECISIONS, SIZES
 from lightgesture.training.datasets import find_data

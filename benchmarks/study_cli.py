@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lightgesture.benchmarks.study_data import training_of
 from lightgesture.benchmarks.tables import Table, to_text
+from lightgesture.config.parsers import positive, whole
 from lightgesture.console import ReaderGoneError, drop_output, print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
@@ -45,20 +46,6 @@ def add_pool_arguments(parser: argparse.ArgumentParser) -> None:
         "--jobs", type=positive, default=1, metavar="N", help="processes that draw (default 1)"
     )
     parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default 0)")
-
-
-def positive(text: str) -> int:
-    """A whole number from 1; ValueError for another text."""
-    if (number := int(text)) < 1:
-        raise ValueError
-    return number
-
-
-def whole(text: str) -> int:
-    """A whole number from 0; ValueError for another text."""
-    if (number := int(text)) < 0:
-        raise ValueError
-    return number
 
 
 def training_from(args: argparse.Namespace) -> CnnTraining:

@@ -10,7 +10,6 @@ import multiprocessing
 import os
 import shutil
 import time
-import uuid
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import suppress
@@ -24,8 +23,9 @@ import cv2
 from lightgesture._version import __version__
 from lightgesture.benchmarks.suite_scenarios import Scenario
 from lightgesture.benchmarks.suite_scoring import TimedWord
-from lightgesture.errors import InputError
+from lightgesture.errors import InputError, UsageError
 from lightgesture.fsm import load_grammar
+from lightgesture.results.atomic import replacing_folder
 from lightgesture.results.writers import to_json_line
 from lightgesture.synth.output import video_writer
 from lightgesture.synth.scene import SceneFrame
@@ -136,38 +136,23 @@ def fetch_clips(takes: Sequence[Take], folder: Path, jobs: int = 1) -> Iterator[
 
 
 def _render(take: Take, place: Path, settings: CacheSettings) -> None:
-    building = place.with_name(f".{uuid.uuid4().hex}.part")
     try:
-        building.mkdir(parents=True)
-        lines = []
-        with video_writer(building / VIDEO, take.fps, take.size) as put:
-            for frame, records in with_truth(take.frames(), load_grammar(), settings.hold):
-                put(frame.image)
-                lines += [to_json_line(record) for record in records]
-        text = "\n".join(lines) + "\n"
-        end = {
-            "type": "end",
-            "video": _digest((building / VIDEO).read_bytes()),
-            "truth": _digest(text.encode()),
-        }
-        (building / TRUTH).write_text(text + json.dumps(end) + "\n", encoding="utf-8")
-        _publish(building, place)
-    except OSError as error:
-        raise InputError(
-            f"{place.parent}: cannot be written ({error.strerror}); set XDG_CACHE_HOME to another folder"
-        ) from error
-    finally:
-        shutil.rmtree(building, ignore_errors=True)
-
-
-def _publish(building: Path, place: Path) -> None:
-    shutil.rmtree(place, ignore_errors=True)
-    try:
-        os.replace(building, place)
-    except OSError:
-        # Another process may have published the same clip in between: its pixels are the same.
-        if not (place / TRUTH).is_file():
-            raise
+        # Another process may put the same clip there in between: its pixels are the same.
+        with replacing_folder(place) as building:
+            lines = []
+            with video_writer(building / VIDEO, take.fps, take.size) as put:
+                for frame, records in with_truth(take.frames(), load_grammar(), settings.hold):
+                    put(frame.image)
+                    lines += [to_json_line(record) for record in records]
+            text = "\n".join(lines) + "\n"
+            end = {
+                "type": "end",
+                "video": _digest((building / VIDEO).read_bytes()),
+                "truth": _digest(text.encode()),
+            }
+            (building / TRUTH).write_text(text + json.dumps(end) + "\n", encoding="utf-8")
+    except UsageError as error:
+        raise InputError(f"{error}: set XDG_CACHE_HOME to one that can be written") from error
 
 
 def _read(scenario: Scenario, place: Path) -> Clip | None:

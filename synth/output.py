@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.errors import UsageError
+from lightgesture.results.atomic import replacing, replacing_folder
 from lightgesture.results.writers import open_json_lines
 from lightgesture.synth.parallel import render_frames
 from lightgesture.synth.scene import Scene
@@ -24,18 +23,14 @@ Put = Callable[[NDArray[np.uint8]], None]
 @contextmanager
 def video_writer(path: Path, fps: float, size: tuple[int, int]) -> Iterator[Put]:
     """A function that appends one picture; the video appears under its name only when complete."""
-    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    writer = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), fps, size)
-    if not writer.isOpened():
-        raise UsageError(f"{path}: OpenCV cannot write a video there; name a folder that can be written")
-    try:
-        yield _without_result(writer)
-        writer.release()
-        os.replace(partial, path)
-    finally:
-        writer.release()
-        partial.unlink(missing_ok=True)
+    with replacing(path, path.suffix) as partial:
+        writer = cv2.VideoWriter(str(partial), cv2.VideoWriter.fourcc(*"mp4v"), fps, size)
+        if not writer.isOpened():
+            raise UsageError(f"{path}: OpenCV cannot write a video there; name a folder that can be written")
+        try:
+            yield _without_result(writer)
+        finally:
+            writer.release()
 
 
 def _without_result(writer: cv2.VideoWriter) -> Put:
@@ -48,22 +43,15 @@ def _without_result(writer: cv2.VideoWriter) -> Put:
 @contextmanager
 def picture_folder(path: Path) -> Iterator[Put]:
     """A function that writes one numbered PNG; the folder appears under its name only when complete."""
-    partial = path.with_name(f".{path.name}.partial")
-    shutil.rmtree(partial, ignore_errors=True)
-    partial.mkdir(parents=True)
     count = 0
+    with replacing_folder(path) as partial:
 
-    def put(image: NDArray[np.uint8]) -> None:
-        nonlocal count
-        cv2.imwrite(str(partial / f"{count:06d}.png"), image)
-        count += 1
+        def put(image: NDArray[np.uint8]) -> None:
+            nonlocal count
+            cv2.imwrite(str(partial / f"{count:06d}.png"), image)
+            count += 1
 
-    try:
         yield put
-        shutil.rmtree(path, ignore_errors=True)
-        os.replace(partial, path)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
 
 
 def write_scene(

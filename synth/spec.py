@@ -6,11 +6,12 @@ the defaults written here and pins down what it names.
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from lightgesture.fsm.toml_file import TomlError, read_toml
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Colour = tuple[Share, Share, Share]
@@ -129,10 +130,9 @@ class SceneSpec(_Part):
 def load_scene_spec(path: str | Path) -> SceneSpec:
     """Read a scene from TOML. Raises ValueError, in one line, for anything that is not a scene."""
     try:
-        with open(path, "rb") as file:
-            return SceneSpec.model_validate(tomllib.load(file))
-    except tomllib.TOMLDecodeError as error:
-        raise ValueError(f"{path}: not valid TOML: {error}; mend that line") from None
+        return SceneSpec.model_validate(read_toml(path, "scene", "lightgesture.synth.spec"))
+    except TomlError as error:
+        raise ValueError(f"{path}: {error}") from None
     except ValidationError as error:
         first = error.errors()[0]
         place, message = ".".join(str(part) for part in first["loc"]), first["msg"]

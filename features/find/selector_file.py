@@ -79,7 +79,7 @@ class Selector:
 
 
 def save_selector(path: Path, selector: Selector) -> None:
-    """Write the file under a temporary name, then rename it."""
+    """Write the file. Raises OSError."""
     learned, classical = selector.learned, selector.classical
     arrays: dict[str, NDArray[Any]] = {
         "version": np.array(VERSION, np.int32),
@@ -91,10 +91,8 @@ def save_selector(path: Path, selector: Selector) -> None:
         **network_arrays("locator", learned.locator),
         **network_arrays("refiner", learned.refiner),
     }
-    temporary = path.with_name(path.name + ".part")
-    with temporary.open("wb") as stream:
+    with path.open("wb") as stream:
         np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]
-    os.replace(temporary, path)
 
 
 def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts:

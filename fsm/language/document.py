@@ -1,6 +1,5 @@
 """From a parsed TOML document to a grammar file's content, and to what is wrong with its single values."""
 
-import difflib
 import re
 from typing import Any
 
@@ -9,6 +8,7 @@ from pydantic_core import ErrorDetails
 
 from lightgesture.fsm.language.grammar import Defect
 from lightgesture.fsm.language.schema import TABLES, GrammarFile
+from lightgesture.fsm.toml_file import suggest_key
 
 _EXPECTED = {
     "string_type": ("is no text", "write it in quotes"),
@@ -95,6 +95,4 @@ def _defect(detail: ErrorDetails) -> Defect:
 
 def _known_keys(parts: list[str | int]) -> str:
     table = TABLES[str(parts[0])] if len(parts) > 1 else GrammarFile
-    keys = list(table.model_fields)
-    close = difflib.get_close_matches(str(parts[-1]), keys, n=1)
-    return f"did you mean '{close[0]}'?" if close else "use " + ", ".join(keys)
+    return suggest_key(str(parts[-1]), list(table.model_fields))

@@ -7,7 +7,7 @@ from lightgesture.console import ReaderGoneError, print_line
 from lightgesture.errors import UsageError
 from lightgesture.records import Record
 from lightgesture.results import Writer
-from lightgesture.sinks.types import SinkError, SinkGoneError
+from lightgesture.sinks.outbox import SinkError, SinkGoneError
 
 
 class PrinterSink:

@@ -7,7 +7,7 @@ from typing import Any
 
 from lightgesture.records import Record
 from lightgesture.results import to_json_line
-from lightgesture.sinks.types import RecordError, SinkError
+from lightgesture.sinks.outbox import RecordError, SinkError
 
 
 class UdpSink:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
+from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.ros_images import IMAGE_TYPES, message_to_bgr8
 
 if TYPE_CHECKING:
@@ -65,11 +66,12 @@ class BagFile:
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[str] = []
+        depth = depth_of(self.name)
         start_ns: int | None = None
         for index, (connection, recorded_ns, data) in enumerate(self._messages()):
             try:
                 message = self._deserialize(connection, data)
-                image = message_to_bgr8(message)
+                image = message_to_bgr8(message, depth)
             except ValueError as error:
                 left_out.append(f"message {index} {error}")
                 continue

@@ -12,8 +12,7 @@ from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.jpeg import JpegSplitter
 from lightgesture.sources.pictures import to_image
-from lightgesture.sources.settings import STREAM, SourceOptions, StreamSettings
-from lightgesture.sources.types import Content
+from lightgesture.sources.types import CHUNK_BYTES, Content, SourceOptions
 
 STANDARD_INPUT = "-"
 """What the user writes for it."""
@@ -26,12 +25,10 @@ class StandardInputStream:
     `stream`: another stream of bytes in its place. InputError at the end: not one picture came.
     """
 
-    def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
-    ) -> None:
+    def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
         self.is_reopened = False
-        self._size, self._settings = options.size, settings
+        self._size = options.size
         self._stream = stream or _open_raw()
 
     def __enter__(self) -> Self:
@@ -54,11 +51,11 @@ class StandardInputStream:
             )
 
     def _chunks(self) -> Iterator[bytes]:
-        while chunk := self._stream.read(self._settings.chunk_bytes):
+        while chunk := self._stream.read(CHUNK_BYTES):
             yield chunk
 
     def _jpegs(self) -> Iterator[bytes]:
-        splitter = JpegSplitter(self._settings.max_picture_bytes, self._settings.max_pixels)
+        splitter = JpegSplitter()
         for chunk in self._chunks():
             yield from splitter.feed(chunk)
 
@@ -87,13 +84,11 @@ def _open_raw() -> IO[bytes]:
 class StandardInput:
     """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
 
-    def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
-    ) -> None:
+    def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
         self.frame_count: int | None = None
         self._fps = options.fps
-        self._stream = StandardInputStream(options, settings, stream)
+        self._stream = StandardInputStream(options, stream)
 
     def __enter__(self) -> Self:
         return self

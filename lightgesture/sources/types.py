@@ -1,8 +1,9 @@
-"""What every source of frames offers."""
+"""What every source of frames offers, and what it may be told beyond a name."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Final, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,33 @@ from lightgesture.frames import Frame
 
 Content = bytes | NDArray[np.uint8]
 """A picture as a stream brings it: a JPEG file, or uint8 (height, width, 3), BGR."""
+
+
+DEFAULT_FPS: Final = 30.0
+"""Frames a second of sources without time stamps, where the user names no other."""
+
+
+@dataclass(frozen=True, slots=True)
+class SourceOptions:
+    """What the user may say about a source; each is used by some sources only."""
+
+    fps: float = DEFAULT_FPS
+    """Frames a second of a folder and of standard input, above 0."""
+    size: tuple[int, int] | None = None
+    """Width and height in pixels: of raw standard input, which is taken for JPEG pictures without it; asked of a
+    camera, which may give another."""
+    topic: str | None = None
+    """The image topic of a bag, needed where it has several."""
+
+
+TIMEOUT_S: Final = 5.0
+"""Seconds until a peer must have answered, and without data after which a stream counts as broken off."""
+
+NO_PICTURE_S: Final = 10.0
+"""Seconds in which data came and no whole picture, after which a stream counts as broken off."""
+
+CHUNK_BYTES: Final = 1 << 16
+"""Bytes read of a stream at once."""
 
 
 class Source(Protocol):

@@ -133,7 +133,7 @@ def test_table_and_file(data, tmp_path, capsys):
     ("options", "status", "message"),
     [
         (["--data", "nowhere"], 1, "nowhere: no such folder"),
-        (["--out", "nowhere/times.json"], 2, "cannot be written"),
+        (["--out", "/proc/nowhere/times.json"], 2, "cannot be written"),
     ],
 )
 def test_bad_options_are_told_in_one_line(data, capsys, monkeypatch, tmp_path, options, status, message):

@@ -51,7 +51,7 @@ def test_pictures_instead_of_video(scene_file, tmp_path):
     ("words", "complaint"),
     [
         ([], "nothing to render"),
-        (["nowhere.toml"], "nowhere.toml: cannot be read"),
+        (["nowhere.toml"], "nowhere.toml: no such file"),
         (["--seed", "1", "--difficulty", "2"], "outside 0 to 1"),
         (["--seed", "-1"], "--seed at least 0"),
         (["--seed", "1", "--jobs", "0"], "--jobs must be at least 1"),

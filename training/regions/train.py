@@ -81,7 +81,8 @@ def train_regions(
     pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
-    save_selector(out, Selector(classical, LearnedParts(*learned, places, pairs)))
+    with replacing(out) as temporary:
+        save_selector(temporary, Selector(classical, LearnedParts(*learned, places, pairs)))
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 

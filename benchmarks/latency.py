@@ -18,9 +18,9 @@ import cv2
 import numpy as np
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks.finding_latency import finding_times, fresh_starts
-from lightgesture.benchmarks.hand_bank import build_bank
-from lightgesture.benchmarks.paper_chain import PaperChain
+from lightgesture.benchmarks.finding.latency import finding_times, fresh_starts
+from lightgesture.benchmarks.paper.bank import build_bank
+from lightgesture.benchmarks.paper.chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline

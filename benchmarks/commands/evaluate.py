@@ -101,7 +101,8 @@ def run_pictures(args: argparse.Namespace) -> int:
 
 def reports(args: argparse.Namespace, targets: "Sequence[str]", data: Path) -> "Iterator[tuple[Report, str]]":
     """What was asked for, one after the other, with the kind of picture that its failures are drawn to."""
-    from lightgesture.benchmarks import accuracy, reading_report
+    from lightgesture.benchmarks import accuracy
+    from lightgesture.benchmarks.reading import report as reading_report
 
     is_reading = args.target != REGIONS or args.model is not None
     models = named_models(args) if is_reading else {}
@@ -127,19 +128,21 @@ def named_models(args: argparse.Namespace) -> "dict[str, Classifier]":
 
 def run_suite(args: argparse.Namespace) -> int:
     """Render or fetch the clips, decode and score them; 0 when all was done."""
-    from lightgesture.benchmarks import suite, suite_tables
     from lightgesture.benchmarks.accuracy import default_methods
-    from lightgesture.benchmarks.suite_cache import cache_folder
-    from lightgesture.benchmarks.suite_scenarios import SUITES
+    from lightgesture.benchmarks.suite import run as suite
+    from lightgesture.benchmarks.suite import tables as suite_tables
+    from lightgesture.benchmarks.suite import takes as suite_takes
+    from lightgesture.benchmarks.suite.cache import cache_folder
+    from lightgesture.benchmarks.suite.scenarios import SUITES
 
     data = suite_data(args.data)
-    takes = [take for name in SUITES for take in suite.takes_of(name, data)]
+    takes = [take for name in SUITES for take in suite_takes.takes_of(name, data)]
     known = {*SUITES, *(take.scenario.name for take in takes)}
     if unknown := [name for name in args.only or () if name not in known]:
         raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
     ((model, classifier),) = named_models(args).items()
     methods = default_methods(classifier, model, data, evaluate_regions.named_selectors(args))
-    chosen = suite.choose_takes(takes, args.only or (), args.quick)
+    chosen = suite_takes.choose_takes(takes, args.only or (), args.quick)
     answers = suite.run_suite(methods, chosen, cache_folder(), show_progress, args.jobs)
     print_tables(suite_tables.all_tables(answers, methods[0].name), args.json)
     if args.out:

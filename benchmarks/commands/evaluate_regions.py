@@ -83,8 +83,8 @@ def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "I
 
 
 def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":
-    from lightgesture.benchmarks.finding_report import FindingRequest, evaluate_finding
-    from lightgesture.benchmarks.suite_cache import cache_folder
+    from lightgesture.benchmarks.finding.report import FindingRequest, evaluate_finding
+    from lightgesture.benchmarks.suite.cache import cache_folder
     from lightgesture.features.find.selector import SELECTORS
 
     selectors = args.selector or SELECTORS
@@ -96,10 +96,10 @@ def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Ite
     )
     yield evaluate_finding(request, data, progress, say)
     if args.clips:
-        from lightgesture.benchmarks.finding_clips import evaluate_clips
+        from lightgesture.benchmarks.finding.clips import evaluate_clips
 
         yield evaluate_clips(selectors, cache_folder(), progress, args.jobs, args.quick)
     if args.ablation:
-        from lightgesture.benchmarks.ablation import evaluate_ablation
+        from lightgesture.benchmarks.finding.ablation import evaluate_ablation
 
         yield evaluate_ablation(data, progress, cache_folder() if args.clips else None, args.jobs)

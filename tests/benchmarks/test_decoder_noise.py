@@ -6,16 +6,16 @@ from itertools import pairwise
 
 import pytest
 
-from lightgesture.benchmarks.decoder_latency import (
+from lightgesture.benchmarks.decoder.latency import (
     ACCEPTING,
     arguments,
     measure,
     our_step,
     recorded,
 )
-from lightgesture.benchmarks.decoder_noise import wrong_bound
-from lightgesture.benchmarks.decoder_peers import edges, transitions_step
-from lightgesture.benchmarks.decoder_signing import (
+from lightgesture.benchmarks.decoder.noise import wrong_bound
+from lightgesture.benchmarks.decoder.peers import edges, transitions_step
+from lightgesture.benchmarks.decoder.signing import (
     HIDDEN_RULES,
     RULES,
     SENTENCES,

@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import ablation, accuracy, finding_report, reading_cost, reading_report
+from lightgesture.benchmarks import accuracy
 from lightgesture.benchmarks.commands import evaluate
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
+from lightgesture.benchmarks.finding import ablation
+from lightgesture.benchmarks.finding import report as finding_report
+from lightgesture.benchmarks.reading import cost as reading_cost
+from lightgesture.benchmarks.reading import report as reading_report
 from lightgesture.errors import InputError, UsageError
 
 

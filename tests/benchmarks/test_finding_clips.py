@@ -6,8 +6,15 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import finding_clips
-from lightgesture.benchmarks.difficulties import (
+from lightgesture.benchmarks.finding import clips as finding_clips
+from lightgesture.benchmarks.finding.clips import (
+    TILE_STEP,
+    clip_tables,
+    evaluate_clips,
+    find_in_clips,
+    missed_sheets,
+)
+from lightgesture.benchmarks.finding.difficulties import (
     DIFFICULTIES,
     GLARE,
     GLOVES,
@@ -20,12 +27,10 @@ from lightgesture.benchmarks.difficulties import (
     difficulty_takes,
     profile_take,
 )
-from lightgesture.benchmarks.finding_clips import evaluate_clips
-from lightgesture.benchmarks.finding_suite import TILE_STEP, clip_tables, find_in_clips, missed_sheets
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_cache import fetch_clip
-from lightgesture.benchmarks.suite_scenarios import ALONE, Scenario, scene_spec
+from lightgesture.benchmarks.suite.cache import fetch_clip
+from lightgesture.benchmarks.suite.scenarios import ALONE, Scenario, scene_spec
 from lightgesture.synth.scene import Scene
 
 

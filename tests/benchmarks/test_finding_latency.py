@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks import finding_latency
-from lightgesture.benchmarks.finding_latency import (
+from lightgesture.benchmarks.finding import latency as finding_latency
+from lightgesture.benchmarks.finding.latency import (
     FOLLOWED,
     LITERT,
     PARTS,

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.hand_bank import (
+from lightgesture.benchmarks.paper.bank import (
     BankSettings,
     HandBank,
     build_bank,
@@ -13,7 +13,7 @@ from lightgesture.benchmarks.hand_bank import (
     hu_moments,
     largest_contour,
 )
-from lightgesture.benchmarks.paper_chain import PaperChain, PaperSettings, skin_mask, within_gate
+from lightgesture.benchmarks.paper.chain import PaperChain, PaperSettings, skin_mask, within_gate
 
 SKIN = (120, 150, 210)
 WATER = (150, 110, 40)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.reading_cost import (
+from lightgesture.benchmarks.reading.cost import (
     CostSettings,
     Pair,
     added_memory,

@@ -8,15 +8,18 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import reading_baselines, reading_study, study_kinds, study_rows
-from lightgesture.benchmarks.study_data import (
+from lightgesture.benchmarks.studies import baselines as reading_baselines
+from lightgesture.benchmarks.studies import kinds as study_kinds
+from lightgesture.benchmarks.studies import reading as reading_study
+from lightgesture.benchmarks.studies import rows as study_rows
+from lightgesture.benchmarks.studies.data import (
     held_out_subjects,
     open_study,
     rows_of_sources,
     training_of,
 )
-from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
-from lightgesture.benchmarks.study_rows import mean_and_worst
+from lightgesture.benchmarks.studies.kinds import EVERYTHING, NOTHING, POOLS
+from lightgesture.benchmarks.studies.rows import mean_and_worst
 from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.training.datasets import fold_of

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lightgesture.benchmarks.suite_cache import (
+from lightgesture.benchmarks.suite.cache import (
     TRUTH,
     VIDEO,
     CacheSettings,

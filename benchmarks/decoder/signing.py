@@ -1,0 +1,163 @@
+"""Sentences signed to a decoder as tokens that go wrong, get hidden or pause, and what is issued."""
+
+import random
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from lightgesture.benchmarks.suite.scenarios import LAND_LIST, WATER_LIST
+from lightgesture.fsm import Decoder, Grammar
+from lightgesture.fsm.settings import Rule
+
+SENTENCES = tuple(sentence for sentence, _ in (*WATER_LIST, *LAND_LIST))
+"""The 50 sentences of the suite."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseSettings:
+    """What is simulated. rate: frames a second. held, passage: frames of a sign and between two, drawn from the range.
+    rates: shares of the frames in which a hand goes wrong. bursts: mean length of a run of wrong frames. repeats: times
+    that every sentence is signed. right, wrong: range of the probability of a right and of a wrong token. hidden:
+    share of the signs of which no hand is found. pauses: share of the signs before which hands are lowered, for
+    `pause` frames.
+    """
+
+    rate: float = 30.0
+    held: tuple[int, int] = (21, 31)
+    passage: tuple[int, int] = (7, 12)
+    rates: tuple[float, ...] = (0.0, 0.01, 0.03, 0.1, 0.2)
+    bursts: tuple[float, ...] = (1.0, 4.0, 10.0)
+    repeats: int = 2
+    right: tuple[float, float] = (0.85, 1.0)
+    wrong: tuple[float, float] = (0.7, 0.9)
+    hidden: float = 0.0
+    pauses: float = 0.0
+    pause: int = 30
+    seed: int = 20180521
+
+
+@dataclass(frozen=True, slots=True)
+class DwellRule:
+    """A row of the table: its name and what makes its decoder. release and those below: as in the grammar file."""
+
+    name: str
+    rule: Rule = "frames"
+    hold: int | None = None
+    hold_seconds: float | None = None
+    release: float = 0.2
+    unread: float = 1.2
+    count_hidden: bool = False
+
+    def decoder(self, grammar: Grammar) -> Decoder:
+        """A fresh decoder."""
+        dwell = replace(
+            grammar.dwell,
+            rule=self.rule,
+            release=self.release,
+            unread=self.unread,
+            count_hidden=self.count_hidden,
+        )
+        return Decoder(replace(grammar, dwell=dwell), hold=self.hold, hold_seconds=self.hold_seconds)
+
+
+RULES = (
+    DwellRule("frames, 15", hold=15),
+    DwellRule("seconds, 0.5", "seconds", hold_seconds=0.5),
+    DwellRule("evidence, 0.3", "evidence", hold_seconds=0.3, release=0.5, unread=2.0),
+    DwellRule("evidence, 0.4", "evidence", hold_seconds=0.4, release=0.5, unread=1.5),
+    DwellRule("frames, 15, signs may get lost", hold=15, unread=100.0),
+    DwellRule("seconds, 0.5, signs may get lost", "seconds", hold_seconds=0.5, unread=100.0),
+    DwellRule("evidence, 0.4, signs may get lost", "evidence", hold_seconds=0.4, release=0.5, unread=100.0),
+)
+"""The limit of unread signing is 0.6 seconds where signs do not get lost."""
+
+HIDDEN_RULES = tuple(
+    replace(rule, name=f"{rule.name}, hidden signs {told}", count_hidden=is_counted)
+    for rule in RULES
+    if rule.name in ("frames, 15", "evidence, 0.4")
+    for told, is_counted in (("get lost", False), ("counted", True))
+)
+
+
+@dataclass(slots=True)
+class Outcome:
+    """Counts over sentences. delays: seconds from the first frame of a sign to its acceptance."""
+
+    signed: int = 0
+    right: int = 0
+    wrong: int = 0
+    delays: list[float] = field(default_factory=list)
+
+
+class Hand:
+    """One hand's reading with its errors, a two-state Markov chain with the given share and mean length of bursts."""
+
+    def __init__(self, tokens: Sequence[str], share: float, burst: float, rng: random.Random) -> None:
+        self._tokens, self._rng = tokens, rng
+        self._leave = 1.0 / burst
+        self._enter = min(1.0, share / ((1.0 - share) * burst))
+        self._is_wrong = False
+        self._shown: str | None = None
+
+    def read(self, true: str | None) -> tuple[str | None, bool]:
+        """The token that is read of a hand that shows `true`, and whether it is wrong."""
+        chance = self._rng.random()
+        if self._is_wrong and chance < self._leave:
+            self._is_wrong = False
+            chance = self._rng.random()
+        elif self._is_wrong:
+            return self._shown, True
+        if chance >= self._enter:
+            return true, False
+        self._is_wrong = True
+        self._shown = None if self._rng.random() < 0.5 else self._rng.choice(self._tokens)
+        return self._shown, True
+
+
+def shown(
+    sentence: str, grammar: Grammar, settings: NoiseSettings, rng: random.Random
+) -> Iterator[tuple[str | None, str | None, bool, int]]:
+    """Frame by frame the hands' tokens, whether they are in view, and the number of the word; -1 on the way to it."""
+    # The suite's sentences in the grammar's own words and signs; NumPy comes with the synthetic diver.
+    from lightgesture.synth.script import sentence_words, word_pairs
+
+    for index, ((left, right), _) in enumerate(word_pairs(grammar, sentence_words(sentence))):
+        for _ in range(rng.randint(*settings.passage)):
+            yield None, None, True, -1
+        if settings.pauses and rng.random() < settings.pauses:
+            yield from [(None, None, False, -1)] * settings.pause
+        is_hidden = settings.hidden > 0.0 and rng.random() < settings.hidden
+        for _ in range(rng.randint(*settings.held)):
+            yield (None, None, False, index) if is_hidden else (left, right, True, index)
+
+
+def sign(
+    sentence: str,
+    rule: DwellRule,
+    grammar: Grammar,
+    share: float,
+    burst: float,
+    settings: NoiseSettings,
+    rng: random.Random,
+    outcome: Outcome,
+) -> None:
+    """Sign one sentence in front of a fresh decoder and count what comes of it."""
+    decoder = rule.decoder(grammar)
+    hands = [Hand(grammar.tokens, share, burst, rng) for _ in range(2)]
+    issued: list[str] = []
+    first, current = 0, -1
+    for frame, (left, right, is_seen, index) in enumerate(shown(sentence, grammar, settings, rng)):
+        if index != current:
+            first, current = frame, index
+        seen = [hand.read(true) for hand, true in zip(hands, (left, right), strict=True)]
+        chances = [rng.uniform(*(settings.wrong if is_wrong else settings.right)) for _, is_wrong in seen]
+        events = decoder.step(
+            seen[0][0], seen[1][0], frame / settings.rate, chances[0], chances[1], frame, is_seen, is_seen
+        )
+        for event in events:
+            if event.type == "instruction":
+                issued.append(event.text)
+            elif event.type == "word" and index >= 0 and event.pair == (left, right):
+                outcome.delays.append((frame - first) / settings.rate)
+    outcome.signed += 1
+    outcome.right += sentence in issued
+    outcome.wrong += len([text for text in issued if text != sentence])

@@ -1,0 +1,197 @@
+"""Time of finding hands alone, with either selector and either run-time of the nets, and what a fresh start costs."""
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+import numpy as np
+
+from lightgesture.benchmarks.finding.pipelines import FindingPipeline, Stages
+from lightgesture.benchmarks.scorer import percentile
+from lightgesture.benchmarks.tables import Cell, Table
+from lightgesture.benchmarks.timing import Image, LatencySettings, RecordingClock, limited_threads
+from lightgesture.features.colour import ColourMap
+from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.types import Candidates
+from lightgesture.sources import DEFAULT_FPS
+
+LITERT = "ai_edge_litert"
+"""Module of the run-time; without it the nets run by NumPy."""
+
+SEARCHED, FOLLOWED = "frame, searched", "frame, followed"
+PARTS = ("colour", "regions", "tracks")
+"""Stages of the pipeline that find hands."""
+
+TIMES_NOTE = (
+    "frame: colour, regions and tracks together, in one thread; searched: the whole picture, also after a look at the "
+    "predicted\nboxes that was not enough; followed: that look was enough; share: of the clip's frames. The classical "
+    "choice only searches."
+)
+STARTS_NOTE = (
+    "seconds from the start of a new Python to the records of its first frame, everything loaded from warm disks; "
+    "peak_mb: its\nlargest resident memory, with the classifier, in units of 1,048,576 bytes."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Engine:
+    """A selector with what runs its nets. uses_litert: else NumPy, as where LiteRT has no wheel."""
+
+    selector: SelectorName
+    uses_litert: bool = True
+
+    @property
+    def name(self) -> str:
+        """Name of the run-time; empty for the choice without nets."""
+        if self.selector == "classical":
+            return ""
+        return "LiteRT" if self.uses_litert else "NumPy"
+
+
+def engines() -> list[Engine]:
+    """What can be timed here."""
+    known = [Engine("learned", False), Engine("classical")]
+    return [Engine("learned"), *known] if find_spec(LITERT) is not None else known
+
+
+@contextmanager
+def without_litert() -> Iterator[None]:
+    """As on a machine on which the run-time is not installed."""
+    hidden = {name: module for name, module in sys.modules.items() if name.split(".")[0] == LITERT}
+    for name in hidden:
+        del sys.modules[name]
+    sys.modules[LITERT] = None  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        del sys.modules[LITERT]
+        sys.modules.update(hidden)
+
+
+class TimedFinding(FindingPipeline):
+    """Finds hands without reading them; keeps the times of each frame and whether it was searched as a whole."""
+
+    def __init__(self, regions: RegionStage) -> None:
+        super().__init__(Stages(regions=lambda: regions))
+        self.restart_clock()
+
+    def restart_clock(self) -> None:
+        """Forget all times."""
+        self.clock = RecordingClock()
+        self._clock = self.clock
+        self.is_searched: list[bool] = []
+
+    def _candidates(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
+        found = super()._candidates(colour, time_s)
+        self.is_searched.append(found[1])
+        return found
+
+
+def open_stage(engine: Engine) -> RegionStage:
+    """The bundled selector with its run-time."""
+    if engine.uses_litert:
+        return RegionStage(engine.selector)
+    with without_litert():
+        return RegionStage(engine.selector)
+
+
+def time_finding(frames: Sequence[Image], engine: Engine, settings: LatencySettings) -> list[dict[str, Cell]]:
+    """Rows of one clip: whole frames that were searched and followed, then their stages."""
+    pipeline = TimedFinding(open_stage(engine))
+    shown = [frames[index % len(frames)] for index in range(settings.warm_up)] + [*frames] * settings.rounds
+    for index, frame in enumerate(shown):
+        if index == settings.warm_up:
+            pipeline.restart_clock()
+        pipeline.process(frame, index / DEFAULT_FPS)
+    searched = np.array(pipeline.is_searched)
+    parts = {name: np.array(pipeline.clock.times[name]) for name in PARTS}
+    whole = np.sum(list(parts.values()), axis=0)
+    rows = []
+    for name, chosen in ((SEARCHED, searched), (FOLLOWED, ~searched)):
+        word = name.split()[-1]
+        kinds = {name: whole, **{f"{part}, {word}": times for part, times in parts.items()}}
+        rows += [_row(kind, times[chosen], len(searched)) for kind, times in kinds.items() if chosen.any()]
+    return [{"selector": engine.selector, "nets": engine.name, **row} for row in rows]
+
+
+def _row(stage: str, times: Iterable[float], frames: int) -> dict[str, Cell]:
+    values = [float(value) for value in times]
+    return {
+        "stage": stage,
+        "share": len(values) / frames,
+        "median_ms": percentile(values, 50),
+        "p95_ms": percentile(values, 95),
+    }
+
+
+def finding_times(clips: Mapping[str, Sequence[Image]], settings: LatencySettings) -> Table:
+    """Every clip with every engine, in one thread."""
+    rows: list[dict[str, Cell]] = []
+    with limited_threads(1):
+        for clip, frames in clips.items():
+            for engine in engines():
+                rows += [{"clip": clip, **row} for row in time_finding(frames, engine, settings)]
+    width, height = settings.size
+    columns = ("clip", "selector", "nets", "stage", "share", "median_ms", "p95_ms")
+    return Table("finding", f"Finding hands at {width} x {height}", columns, tuple(rows), TIMES_NOTE)
+
+
+FRESH_START = """
+import json, sys, time
+if {hides}:
+    sys.modules["{litert}"] = None
+import cv2
+cv2.setNumThreads(1)
+import numpy
+from lightgesture.pipeline import Pipeline
+pipeline = Pipeline(selector="{selector}")
+pipeline.process(numpy.random.default_rng(0).integers(0, 255, ({height}, {width}, 3), numpy.uint8), 0.0)
+ready = time.time()
+try:
+    with open("/proc/self/status", encoding="ascii") as status:
+        peak = next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
+except (OSError, StopIteration):
+    peak = None
+print(json.dumps([ready, peak]))
+"""
+"""What a new process runs. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
+
+
+def fresh_start(engine: Engine, settings: LatencySettings) -> tuple[float, float | None]:
+    """Seconds to the first frame and peak memory (MB, None where the system does not tell) of a new process.
+
+    Raises subprocess.CalledProcessError where it fails.
+    """
+    width, height = settings.size
+    code = FRESH_START.format(
+        hides=not engine.uses_litert, litert=LITERT, selector=engine.selector, width=width, height=height
+    )
+    start = time.time()
+    command = [sys.executable, "-c", code]
+    answer = subprocess.run(command, check=True, capture_output=True, text=True)
+    ready, peak = json.loads(answer.stdout.splitlines()[-1])
+    return ready - start, peak
+
+
+def fresh_starts(settings: LatencySettings) -> Table:
+    """Median of some starts of each engine."""
+    rows: list[dict[str, Cell]] = []
+    for engine in engines():
+        starts = [fresh_start(engine, settings) for _ in range(settings.starts)]
+        peaks = [peak for _, peak in starts if peak is not None]
+        rows.append(
+            {
+                "selector": engine.selector,
+                "nets": engine.name,
+                "starts": len(starts),
+                "seconds": percentile([seconds for seconds, _ in starts], 50),
+                "peak_mb": percentile(peaks, 50) if peaks else None,
+            }
+        )
+    columns = ("selector", "nets", "starts", "seconds", "peak_mb")
+    return Table("starts", "Start of the pipeline in a new process", columns, tuple(rows), STARTS_NOTE)

@@ -10,14 +10,16 @@ import argparse
 import random
 import sys
 from collections.abc import Sequence
-from dataclasses import replace
 from statistics import median
+from typing import Final
 
 from lightgesture.benchmarks.decoder.signing import (
+    HELD,
     HIDDEN_RULES,
+    PASSAGE,
     RULES,
     SENTENCES,
-    NoiseSettings,
+    Absence,
     Outcome,
     sign,
 )
@@ -25,8 +27,20 @@ from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.console import print_line
 from lightgesture.fsm import load_grammar
 
+RATES: Final = (0.0, 0.01, 0.03, 0.1, 0.2)
+"""Shares of the frames in which a hand goes wrong."""
 
-def wrong_bound(share: float, burst: float, words: float, settings: NoiseSettings, hold: int = 15) -> float:
+BURSTS: Final = (1.0, 4.0, 10.0)
+"""Mean length of a run of wrong frames."""
+
+REPEATS: Final = 2
+"""Times that every sentence is signed."""
+
+SEED: Final = 20180521
+"""Of all that is drawn."""
+
+
+def wrong_bound(share: float, burst: float, words: float, hold: int = 15) -> float:
     """Most wrong instructions a sentence, for an unbroken hold of `hold` frames and the limit of unread signing.
 
     A lost sign alone gives none: its frames and those of both passages are more than the limit. Nor does a sign that
@@ -38,11 +52,11 @@ def wrong_bound(share: float, burst: float, words: float, settings: NoiseSetting
     * share / (2 burst) * (1 - 1/burst)^(hold - 1), whatever the other hand shows and whether or not the pair is a
     word that fits.
     """
-    frames = words * (sum(settings.held) + sum(settings.passage)) / 2
+    frames = words * (sum(HELD) + sum(PASSAGE)) / 2
     return min(1.0, frames * share / burst * (1.0 - 1.0 / burst) ** (hold - 1))
 
 
-def measure(settings: NoiseSettings) -> Table:
+def measure(repeats: int) -> Table:
     """The table of p against wrong, missed and median time to accept, for each rule and length of bursts."""
     grammar = load_grammar()
     words = (
@@ -51,14 +65,14 @@ def measure(settings: NoiseSettings) -> Table:
     )
     rows: list[dict[str, Cell]] = []
     for rule in RULES:
-        for burst in settings.bursts:
-            for share in settings.rates if burst == settings.bursts[0] else settings.rates[1:]:
+        for burst in BURSTS:
+            for share in RATES if burst == BURSTS[0] else RATES[1:]:
                 # Every rule is shown the same frames.
-                rng = random.Random(f"{settings.seed} {burst} {share}")
+                rng = random.Random(f"{SEED} {burst} {share}")
                 outcome = Outcome()
-                for sentence in SENTENCES * settings.repeats:
-                    sign(sentence, rule, grammar, share, burst, settings, rng, outcome)
-                bound = wrong_bound(share, burst, words, settings) if rule is RULES[0] else None
+                for sentence in SENTENCES * repeats:
+                    sign(sentence, rule, grammar, share, burst, rng, outcome)
+                bound = wrong_bound(share, burst, words) if rule is RULES[0] else None
                 rows.append(
                     {
                         "rule": rule.name,
@@ -82,16 +96,16 @@ def measure(settings: NoiseSettings) -> Table:
     return Table("decoder_noise", "Instructions under misreadings", columns, tuple(rows), note)
 
 
-def measure_hidden(settings: NoiseSettings) -> Table:
+def measure_hidden(repeats: int) -> Table:
     """What comes of hidden signs and of pauses with lowered hands, where they count and where they do not."""
     grammar = load_grammar()
     rows: list[dict[str, Cell]] = []
     for rule in HIDDEN_RULES:
-        for what in (replace(settings, hidden=0.05), replace(settings, pauses=0.05)):
-            rng = random.Random(f"{settings.seed} {what.hidden} {what.pauses}")
+        for what in (Absence(hidden=0.05), Absence(pauses=0.05)):
+            rng = random.Random(f"{SEED} {what.hidden} {what.pauses}")
             outcome = Outcome()
-            for sentence in SENTENCES * settings.repeats:
-                sign(sentence, rule, grammar, 0.0, 1.0, what, rng, outcome)
+            for sentence in SENTENCES * repeats:
+                sign(sentence, rule, grammar, 0.0, 1.0, rng, outcome, what)
             rows.append(
                 {
                     "rule": rule.name,
@@ -117,17 +131,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         prog="python -m lightgesture.benchmarks.decoder.noise",
         description="Wrong and missed instructions against the rate of misreadings, by rule of dwell.",
     )
-    repeats = NoiseSettings().repeats
     parser.add_argument(
         "--repeats",
         type=int,
-        default=repeats,
+        default=REPEATS,
         metavar="N",
-        help=f"times that each sentence is signed (default {repeats})",
+        help=f"times that each sentence is signed (default {REPEATS})",
     )
     args = parser.parse_args(argv)
-    settings = replace(NoiseSettings(), repeats=max(1, args.repeats))
-    print_line(to_text([measure(settings), measure_hidden(settings)]))
+    repeats = max(1, args.repeats)
+    print_line(to_text([measure(repeats), measure_hidden(repeats)]))
     return 0
 
 

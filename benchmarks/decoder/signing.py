@@ -3,6 +3,7 @@
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 from lightgesture.benchmarks.suite.scenarios import LAND_LIST, WATER_LIST
 from lightgesture.fsm import Decoder, Grammar
@@ -12,27 +13,30 @@ SENTENCES = tuple(sentence for sentence, _ in (*WATER_LIST, *LAND_LIST))
 """The 50 sentences of the suite."""
 
 
-@dataclass(frozen=True, slots=True)
-class NoiseSettings:
-    """What is simulated. rate: frames a second. held, passage: frames of a sign and between two, drawn from the range.
-    rates: shares of the frames in which a hand goes wrong. bursts: mean length of a run of wrong frames. repeats: times
-    that every sentence is signed. right, wrong: range of the probability of a right and of a wrong token. hidden:
-    share of the signs of which no hand is found. pauses: share of the signs before which hands are lowered, for
-    `pause` frames.
-    """
+RATE: Final = 30.0
+"""Frames a second."""
 
-    rate: float = 30.0
-    held: tuple[int, int] = (21, 31)
-    passage: tuple[int, int] = (7, 12)
-    rates: tuple[float, ...] = (0.0, 0.01, 0.03, 0.1, 0.2)
-    bursts: tuple[float, ...] = (1.0, 4.0, 10.0)
-    repeats: int = 2
-    right: tuple[float, float] = (0.85, 1.0)
-    wrong: tuple[float, float] = (0.7, 0.9)
+HELD, PASSAGE = (21, 31), (7, 12)
+"""Frames of a sign and between two, drawn from the range."""
+
+RIGHT, WRONG = (0.85, 1.0), (0.7, 0.9)
+"""Range of the probability of a right and of a wrong token."""
+
+PAUSE: Final = 30
+"""Frames for which hands are lowered in a pause."""
+
+
+@dataclass(frozen=True, slots=True)
+class Absence:
+    """How often no hand is there to be found."""
+
     hidden: float = 0.0
+    """Share of the signs of which no hand is found."""
     pauses: float = 0.0
-    pause: int = 30
-    seed: int = 20180521
+    """Share of the signs before which hands are lowered for a while."""
+
+
+NO_ABSENCE = Absence()
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,19 +118,19 @@ class Hand:
 
 
 def shown(
-    sentence: str, grammar: Grammar, settings: NoiseSettings, rng: random.Random
+    sentence: str, grammar: Grammar, absence: Absence, rng: random.Random
 ) -> Iterator[tuple[str | None, str | None, bool, int]]:
     """Frame by frame the hands' tokens, whether they are in view, and the number of the word; -1 on the way to it."""
     # The suite's sentences in the grammar's own words and signs; NumPy comes with the synthetic diver.
     from lightgesture.synth.script import sentence_words, word_pairs
 
     for index, ((left, right), _) in enumerate(word_pairs(grammar, sentence_words(sentence))):
-        for _ in range(rng.randint(*settings.passage)):
+        for _ in range(rng.randint(*PASSAGE)):
             yield None, None, True, -1
-        if settings.pauses and rng.random() < settings.pauses:
-            yield from [(None, None, False, -1)] * settings.pause
-        is_hidden = settings.hidden > 0.0 and rng.random() < settings.hidden
-        for _ in range(rng.randint(*settings.held)):
+        if absence.pauses and rng.random() < absence.pauses:
+            yield from [(None, None, False, -1)] * PAUSE
+        is_hidden = absence.hidden > 0.0 and rng.random() < absence.hidden
+        for _ in range(rng.randint(*HELD)):
             yield (None, None, False, index) if is_hidden else (left, right, True, index)
 
 
@@ -136,28 +140,28 @@ def sign(
     grammar: Grammar,
     share: float,
     burst: float,
-    settings: NoiseSettings,
     rng: random.Random,
     outcome: Outcome,
+    absence: Absence = NO_ABSENCE,
 ) -> None:
     """Sign one sentence in front of a fresh decoder and count what comes of it."""
     decoder = rule.decoder(grammar)
     hands = [Hand(grammar.tokens, share, burst, rng) for _ in range(2)]
     issued: list[str] = []
     first, current = 0, -1
-    for frame, (left, right, is_seen, index) in enumerate(shown(sentence, grammar, settings, rng)):
+    for frame, (left, right, is_seen, index) in enumerate(shown(sentence, grammar, absence, rng)):
         if index != current:
             first, current = frame, index
         seen = [hand.read(true) for hand, true in zip(hands, (left, right), strict=True)]
-        chances = [rng.uniform(*(settings.wrong if is_wrong else settings.right)) for _, is_wrong in seen]
+        chances = [rng.uniform(*(WRONG if is_wrong else RIGHT)) for _, is_wrong in seen]
         events = decoder.step(
-            seen[0][0], seen[1][0], frame / settings.rate, chances[0], chances[1], frame, is_seen, is_seen
+            seen[0][0], seen[1][0], frame / RATE, chances[0], chances[1], frame, is_seen, is_seen
         )
         for event in events:
             if event.type == "instruction":
                 issued.append(event.text)
             elif event.type == "word" and index >= 0 and event.pair == (left, right):
-                outcome.delays.append((frame - first) / settings.rate)
+                outcome.delays.append((frame - first) / RATE)
     outcome.signed += 1
     outcome.right += sentence in issued
     outcome.wrong += len([text for text in issued if text != sentence])

@@ -7,6 +7,7 @@ is laid over the pictures, as the sun veils what a camera sees against it; the o
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -26,7 +27,7 @@ DIFFICULTIES = (
     "clear", GLARE, "bubbles", "reflection", "face", "out of view", "turbid", GLOVES, "cast", "far", "bare arms",
     "back light", "skin colours",
 )  # fmt: skip
-"""Names of `suite_scenarios`, "reflection" being the mirror image in the surface and "out of view" partial hands."""
+"""Names of `suite.scenarios`, "reflection" being the mirror image in the surface and "out of view" partial hands."""
 
 IN_ROOMS = frozenset({"back light", "skin colours"})
 
@@ -47,38 +48,41 @@ LEARNT = Excerpt(100, 10, 6)
 """What a colour profile is learnt from: later frames of the same scene."""
 
 
-@dataclass(frozen=True, slots=True)
-class GlareSettings:
-    """strength: light at the middle of the veil over white. reach: its standard deviation over the picture's width.
-    height: of its middle over the picture's height. sway: how far it moves, over the picture's width. flicker: share of
-    the light that waves take away. period_s: of the waves.
-    """
+STRENGTH: Final = 0.7
+"""Light at the middle of the sun's veil over white."""
 
-    strength: float = 0.7
-    reach: float = 0.3
-    height: float = 0.1
-    sway: float = 0.08
-    flicker: float = 0.3
-    period_s: float = 0.7
+REACH: Final = 0.3
+"""Standard deviation of the veil over the picture's width."""
+
+HEIGHT: Final = 0.1
+"""Of the veil's middle over the picture's height."""
+
+SWAY: Final = 0.08
+"""How far the veil moves, over the picture's width."""
+
+FLICKER: Final = 0.3
+"""Share of the light that waves take away."""
+
+PERIOD_S: Final = 0.7
+"""Of the waves."""
 
 
 class Glare:
     """The veil of the sun behind the diver, moving as the surface does."""
 
-    def __init__(self, size: tuple[int, int], rng: np.random.Generator, settings: GlareSettings) -> None:
-        self._size, self._settings = size, settings
+    def __init__(self, size: tuple[int, int], rng: np.random.Generator) -> None:
+        self._size = size
         self._x = float(rng.uniform(0.3, 0.7))
         self._phases = rng.uniform(0.0, 2.0 * np.pi, 2)
 
     def lay_over(self, picture: Float32, time_s: float) -> Float32:
         """Add the veil to a linear picture, float32 (h, w, 3)."""
-        s = self._settings
         width, height = self._size
-        swing = np.sin(2.0 * np.pi * time_s / s.period_s * np.array([0.37, 1.0]) + self._phases)
-        across = np.arange(width) / width - self._x - s.sway * swing[0]
-        down = (np.arange(height) / height - s.height) * height / width
-        veil = np.exp(-0.5 * (across[None, :] ** 2 + down[:, None] ** 2) / s.reach**2)
-        light = s.strength * (1.0 - s.flicker * 0.5 * (1.0 + swing[1]))
+        swing = np.sin(2.0 * np.pi * time_s / PERIOD_S * np.array([0.37, 1.0]) + self._phases)
+        across = np.arange(width) / width - self._x - SWAY * swing[0]
+        down = (np.arange(height) / height - HEIGHT) * height / width
+        veil = np.exp(-0.5 * (across[None, :] ** 2 + down[:, None] ** 2) / REACH**2)
+        light = STRENGTH * (1.0 - FLICKER * 0.5 * (1.0 + swing[1]))
         return np.asarray(picture + (light * veil)[..., None].astype(np.float32), np.float32)
 
 
@@ -93,7 +97,7 @@ class ExcerptTake(SyntheticTake):
         scene = Scene(scene_spec(self.scenario))
         glare = None
         if self.scenario.difficulty == GLARE:
-            glare = Glare(self.size, stream(self.scenario.seed, "suite"), GlareSettings())
+            glare = Glare(self.size, stream(self.scenario.seed, "suite"))
         for index in range(self.excerpt.count):
             frame = scene.frame(self.excerpt.first + index * self.excerpt.step)
             time_s = index / self.fps

@@ -8,13 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
+from typing import Final
 
 import numpy as np
 
 from lightgesture.benchmarks.finding.pipelines import FindingPipeline, Stages
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.benchmarks.timing import Image, LatencySettings, RecordingClock, limited_threads
+from lightgesture.benchmarks.timing import SIZE, WARM_UP, Image, RecordingClock, limited_threads
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.types import Candidates
@@ -22,6 +23,9 @@ from lightgesture.sources import DEFAULT_FPS
 
 LITERT = "ai_edge_litert"
 """Module of the run-time; without it the nets run by NumPy."""
+
+STARTS: Final = 5
+"""New processes whose start is timed."""
 
 SEARCHED, FOLLOWED = "frame, searched", "frame, followed"
 PARTS = ("colour", "regions", "tracks")
@@ -100,12 +104,12 @@ def open_stage(engine: Engine) -> RegionStage:
         return RegionStage(engine.selector)
 
 
-def time_finding(frames: Sequence[Image], engine: Engine, settings: LatencySettings) -> list[dict[str, Cell]]:
+def time_finding(frames: Sequence[Image], engine: Engine, rounds: int) -> list[dict[str, Cell]]:
     """Rows of one clip: whole frames that were searched and followed, then their stages."""
     pipeline = TimedFinding(open_stage(engine))
-    shown = [frames[index % len(frames)] for index in range(settings.warm_up)] + [*frames] * settings.rounds
+    shown = [frames[index % len(frames)] for index in range(WARM_UP)] + [*frames] * rounds
     for index, frame in enumerate(shown):
-        if index == settings.warm_up:
+        if index == WARM_UP:
             pipeline.restart_clock()
         pipeline.process(frame, index / DEFAULT_FPS)
     searched = np.array(pipeline.is_searched)
@@ -129,14 +133,14 @@ def _row(stage: str, times: Iterable[float], frames: int) -> dict[str, Cell]:
     }
 
 
-def finding_times(clips: Mapping[str, Sequence[Image]], settings: LatencySettings) -> Table:
+def finding_times(clips: Mapping[str, Sequence[Image]], rounds: int) -> Table:
     """Every clip with every engine, in one thread."""
     rows: list[dict[str, Cell]] = []
     with limited_threads(1):
         for clip, frames in clips.items():
             for engine in engines():
-                rows += [{"clip": clip, **row} for row in time_finding(frames, engine, settings)]
-    width, height = settings.size
+                rows += [{"clip": clip, **row} for row in time_finding(frames, engine, rounds)]
+    width, height = SIZE
     columns = ("clip", "selector", "nets", "stage", "share", "median_ms", "p95_ms")
     return Table("finding", f"Finding hands at {width} x {height}", columns, tuple(rows), TIMES_NOTE)
 
@@ -162,12 +166,12 @@ print(json.dumps([ready, peak]))
 """What a new process runs. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
 
 
-def fresh_start(engine: Engine, settings: LatencySettings) -> tuple[float, float | None]:
+def fresh_start(engine: Engine) -> tuple[float, float | None]:
     """Seconds to the first frame and peak memory (MB, None where the system does not tell) of a new process.
 
     Raises subprocess.CalledProcessError where it fails.
     """
-    width, height = settings.size
+    width, height = SIZE
     code = FRESH_START.format(
         hides=not engine.uses_litert, litert=LITERT, selector=engine.selector, width=width, height=height
     )
@@ -178,11 +182,11 @@ def fresh_start(engine: Engine, settings: LatencySettings) -> tuple[float, float
     return ready - start, peak
 
 
-def fresh_starts(settings: LatencySettings) -> Table:
+def fresh_starts() -> Table:
     """Median of some starts of each engine."""
     rows: list[dict[str, Cell]] = []
     for engine in engines():
-        starts = [fresh_start(engine, settings) for _ in range(settings.starts)]
+        starts = [fresh_start(engine) for _ in range(STARTS)]
         peaks = [peak for _, peak in starts if peak is not None]
         rows.append(
             {

@@ -9,6 +9,7 @@ other sources.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -25,25 +26,24 @@ HU_FLOOR = 1e-5
 """Hu moments below this are left out of the distance, as `cv2.matchShapes` does."""
 
 
-@dataclass(frozen=True, slots=True)
-class BankSettings:
-    """How the bank is made.
+CUT_OUT_SET: Final = "massey"
+"""Source whose pictures are black around the hand."""
 
-    cut_out_set: source whose pictures are black around the hand.
-    left_out: sources that show the people of scored frames (`emre_drone`: those of `frames/drone`).
-    black_level: grey level, 0 to 255, above which a pixel of these belongs to the hand; higher eats shadows.
-    per_class: contours a class; more cost time and gain little, neighbours being of the same five subjects.
-    finger_width: width of a drawn finger over the palm's length (wrist to middle knuckle).
-    accepted_share: share of the bank's hands that must lie within the accepted distance of another
-        subject's; higher accepts more shapes that are no hands.
-    """
+LEFT_OUT: Final = frozenset({"emre_drone"})
+"""Sources that show the people of scored frames, those of `frames/drone`."""
 
-    cut_out_set: str = "massey"
-    left_out: frozenset[str] = frozenset({"emre_drone"})
-    black_level: int = 16
-    per_class: int = 30
-    finger_width: float = 0.28
-    accepted_share: float = 0.95
+BLACK_LEVEL: Final = 16
+"""Grey level, 0 to 255, above which a pixel of cut-out pictures belongs to the hand; higher eats shadows."""
+
+PER_CLASS: Final = 30
+"""Contours a class; more cost time and gain little, neighbours being of the same five subjects."""
+
+FINGER_WIDTH: Final = 0.28
+"""Width of a drawn finger over the palm's length (wrist to middle knuckle)."""
+
+ACCEPTED_SHARE: Final = 0.95
+"""Share of the bank's hands that must lie within the accepted distance of another subject's; higher accepts more shapes
+that are no hands."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,24 +99,23 @@ def largest_contour(mask: NDArray[np.uint8]) -> Contour | None:
     return np.asarray(max(contours, key=cv2.contourArea), dtype=np.int32).reshape(-1, 2)
 
 
-def drawn_contour(landmarks: NDArray[np.float32], finger_width: float) -> Contour | None:
+def drawn_contour(landmarks: NDArray[np.float32]) -> Contour | None:
     """Contour of a hand drawn as thick strokes along its 21 landmarks, float32 (21, 2) pixels."""
     low = landmarks.min(axis=0)
     reach = landmarks.max(axis=0) - low
     margin = float(reach.max()) / 2  # more than half of any stroke
     columns, rows = np.ceil(reach + 2 * margin).astype(int).tolist()
-    return largest_contour(draw_hand((rows, columns), landmarks - low + margin, finger_width))
+    return largest_contour(draw_hand((rows, columns), landmarks - low + margin, FINGER_WIDTH))
 
 
-def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
+def build_bank(data: Path) -> HandBank:
     """Build the bank from `hands/train` of a data folder."""
-    settings = settings or BankSettings()
     rows = [
         row
         for row in read_table(data, "hands/train.csv")
-        if row["token"] != "none" and row["set"] not in settings.left_out
+        if row["token"] != "none" and row["set"] not in LEFT_OUT
     ]
-    cut_out = {row["token"] for row in rows if row["set"] == settings.cut_out_set}
+    cut_out = {row["token"] for row in rows if row["set"] == CUT_OUT_SET}
     moments: list[Moments] = []
     tokens: list[str] = []
     subjects: list[str] = []
@@ -124,24 +123,20 @@ def build_bank(data: Path, settings: BankSettings | None = None) -> HandBank:
         is_cut_out = token in cut_out
         members = [row for row in rows if row["token"] == token]
         if is_cut_out:
-            members = [row for row in members if row["set"] == settings.cut_out_set]
-        for row in _evenly(members, settings.per_class):
-            contour = (
-                _cut_out_contour(data, row, settings)
-                if is_cut_out
-                else drawn_contour(read_landmarks(row), settings.finger_width)
-            )
+            members = [row for row in members if row["set"] == CUT_OUT_SET]
+        for row in _evenly(members, PER_CLASS):
+            contour = _cut_out_contour(data, row) if is_cut_out else drawn_contour(read_landmarks(row))
             if contour is not None:
                 moments.append(hu_moments(contour))
                 tokens.append(token)
                 subjects.append(f"{row['set']} {row['subject']}")
     bank = np.stack(moments)
-    return HandBank(bank, tuple(tokens), _accepted_distance(bank, subjects, settings.accepted_share))
+    return HandBank(bank, tuple(tokens), _accepted_distance(bank, subjects))
 
 
-def _cut_out_contour(data: Path, row: dict[str, str], settings: BankSettings) -> Contour | None:
+def _cut_out_contour(data: Path, row: dict[str, str]) -> Contour | None:
     image = read_picture(data / "hands" / row["path"])
-    return largest_contour((image.max(axis=2) > settings.black_level).astype(np.uint8))
+    return largest_contour((image.max(axis=2) > BLACK_LEVEL).astype(np.uint8))
 
 
 def _evenly(rows: Sequence[dict[str, str]], count: int) -> list[dict[str, str]]:
@@ -149,12 +144,12 @@ def _evenly(rows: Sequence[dict[str, str]], count: int) -> list[dict[str, str]]:
     return [rows[index * len(rows) // count] for index in range(count)]
 
 
-def _accepted_distance(bank: Moments, subjects: Sequence[str], accepted_share: float) -> float:
-    """Distance within which `accepted_share` of the contours find one of another subject."""
+def _accepted_distance(bank: Moments, subjects: Sequence[str]) -> float:
+    """Distance within which ACCEPTED_SHARE of the contours find one of another subject."""
     names = np.asarray(subjects)
     nearest = []
     for moments, subject in zip(bank, subjects, strict=True):
         others = bank[names != subject]
         if len(others):
             nearest.append(hu_distances(moments, others).min())
-    return float(np.quantile(nearest, accepted_share)) if nearest else float("inf")
+    return float(np.quantile(nearest, ACCEPTED_SHARE)) if nearest else float("inf")

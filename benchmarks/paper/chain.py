@@ -16,6 +16,7 @@ None of them was tuned on the pictures that are scored.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -28,25 +29,26 @@ SIDES_BY_PLACE = ("right", "left")
 """The diver's side of the image-left and of the image-right hand."""
 
 
-@dataclass(frozen=True, slots=True)
-class PaperSettings:
-    """Constants of the chain; the module's docstring names their sources.
+BLUR: Final = 5
+"""Side of the Gaussian kernel, odd pixels."""
 
-    blur: side of the Gaussian kernel, odd pixels. hsv_low, hsv_high: skin range, OpenCV units (hue 0 to 179).
-    kernel: side of the opening and closing, pixels. least_area: of a region, as a share of the frame.
-    gate_sides: farthest move between frames, in sides (square root of the last box's area).
-    gate_scale: largest change of area between frames, as a factor.
-    patience: frames after which a hand that is not seen is forgotten and searched everywhere.
-    """
+SKIN_LOW, SKIN_HIGH = np.array((0, 59, 0)), np.array((25, 173, 255))
+"""Skin in HSV, OpenCV's units (hue 0 to 179)."""
 
-    blur: int = 5
-    hsv_low: tuple[int, int, int] = (0, 59, 0)
-    hsv_high: tuple[int, int, int] = (25, 173, 255)
-    kernel: int = 5
-    least_area: float = 0.001
-    gate_sides: float = 1.0
-    gate_scale: float = 2.0
-    patience: int = 5
+KERNEL: Final = 5
+"""Side of the opening and closing, pixels."""
+
+LEAST_AREA: Final = 0.001
+"""Of a region, as a share of the frame."""
+
+GATE_SIDES: Final = 1.0
+"""Farthest move between frames, in sides (square root of the last box's area)."""
+
+GATE_SCALE: Final = 2.0
+"""Largest change of area between frames, as a factor."""
+
+PATIENCE: Final = 5
+"""Frames after which a hand that is not seen is forgotten and searched everywhere."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,14 +73,13 @@ class PaperChain:
     `process` on a fresh object reads a single picture.
     """
 
-    def __init__(self, bank: HandBank, settings: PaperSettings | None = None) -> None:
+    def __init__(self, bank: HandBank) -> None:
         self._bank = bank
-        self._settings = settings or PaperSettings()
         self._memory: dict[str, _Memory] = {}
 
     def process(self, image: NDArray[np.uint8]) -> list[PaperHand]:
         """Choose at most two hands of a BGR frame, at most one a side."""
-        contours = skin_contours(image, self._settings)
+        contours = skin_contours(image)
         chosen = self._follow(contours)
         if len(chosen) < 2:
             chosen = self._search(contours, chosen, image.shape[1])
@@ -93,8 +94,7 @@ class PaperChain:
             hands = [
                 self._read(contour, side)
                 for contour in contours
-                if bounding_box(contour) not in taken
-                and within_gate(bounding_box(contour), memory.box, self._settings)
+                if bounding_box(contour) not in taken and within_gate(bounding_box(contour), memory.box)
             ]
             accepted = [hand for hand in hands if hand.distance <= self._bank.accepted_distance]
             if accepted:
@@ -126,27 +126,25 @@ class PaperChain:
     def _remember(self, chosen: dict[str, PaperHand]) -> None:
         missed = {side: memory.missed + 1 for side, memory in self._memory.items() if side not in chosen}
         kept = {
-            side: _Memory(self._memory[side].box, count)
-            for side, count in missed.items()
-            if count < self._settings.patience
+            side: _Memory(self._memory[side].box, count) for side, count in missed.items() if count < PATIENCE
         }
         self._memory = {**kept, **{side: _Memory(hand.box, 0) for side, hand in chosen.items()}}
 
 
-def skin_mask(image: NDArray[np.uint8], settings: PaperSettings) -> NDArray[np.uint8]:
+def skin_mask(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """One fixed threshold in HSV; uint8 (height, width), 255 on skin."""
-    blurred = cv2.GaussianBlur(image, (settings.blur, settings.blur), 0)
+    blurred = cv2.GaussianBlur(image, (BLUR, BLUR), 0)
     hsv = cv2.cvtColor(blurred, cv2.COLOR_BGR2HSV)
-    mask = cv2.inRange(hsv, np.asarray(settings.hsv_low), np.asarray(settings.hsv_high))
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (settings.kernel, settings.kernel))
+    mask = cv2.inRange(hsv, SKIN_LOW, SKIN_HIGH)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (KERNEL, KERNEL))
     opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, kernel)
     return np.asarray(cv2.morphologyEx(opened, cv2.MORPH_CLOSE, kernel), dtype=np.uint8)
 
 
-def skin_contours(image: NDArray[np.uint8], settings: PaperSettings) -> list[Contour]:
+def skin_contours(image: NDArray[np.uint8]) -> list[Contour]:
     """Outer contours, int32 (n, 2), of the skin regions that are large enough."""
-    contours, _ = cv2.findContours(skin_mask(image, settings), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    least = settings.least_area * image.shape[0] * image.shape[1]
+    contours, _ = cv2.findContours(skin_mask(image), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    least = LEAST_AREA * image.shape[0] * image.shape[1]
     large = [contour for contour in contours if cv2.contourArea(contour) >= least]
     return [np.asarray(contour, dtype=np.int32).reshape(-1, 2) for contour in large]
 
@@ -163,10 +161,10 @@ def middle(contour: Contour) -> float:
     return x + width / 2
 
 
-def within_gate(box: Box, last: Box, settings: PaperSettings) -> bool:
+def within_gate(box: Box, last: Box) -> bool:
     """Whether a box is near enough to the last one in place and size."""
     area, last_area = box[2] * box[3], last[2] * last[3]
     move_x = box[0] + box[2] / 2 - last[0] - last[2] / 2
     move_y = box[1] + box[3] / 2 - last[1] - last[3] / 2
-    is_near = move_x**2 + move_y**2 <= settings.gate_sides**2 * last_area
-    return is_near and last_area / settings.gate_scale <= area <= last_area * settings.gate_scale
+    is_near = move_x**2 + move_y**2 <= GATE_SIDES**2 * last_area
+    return is_near and last_area / GATE_SCALE <= area <= last_area * GATE_SCALE

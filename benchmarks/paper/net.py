@@ -7,7 +7,7 @@ labels.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 import torch
@@ -23,28 +23,32 @@ from lightgesture.training.svm.machine import sample_weights
 Float = NDArray[np.float32]
 
 
-@dataclass(frozen=True, slots=True)
-class PaperNetSettings:
-    """maps: of the two convolutions. whole: units of the dense layer between them and the classes. kernel: side in
-    pixels. batch, rate: of the optimiser."""
+MAPS: Final = (32, 64)
+"""Of the two convolutions."""
 
-    maps: tuple[int, int] = (32, 64)
-    whole: int = 256
-    kernel: int = 5
-    batch: int = 128
-    rate: float = 1e-3
+WHOLE: Final = 256
+"""Units of the dense layer between them and the classes."""
+
+KERNEL: Final = 5
+"""Side of the convolutions, pixels."""
+
+BATCH: Final = 128
+"""Patches a step of the optimiser."""
+
+RATE: Final = 1e-3
+"""Of the optimiser."""
 
 
-def make_paper_net(classes: int, size: int, settings: PaperNetSettings, seed: int) -> nn.Sequential:
+def make_paper_net(classes: int, size: int, seed: int) -> nn.Sequential:
     """The layers with random weights, for patches of `size` pixels, (n, 3, size, size) -> scores (n, classes)."""
     torch.manual_seed(seed)
-    first, second = settings.maps
+    first, second = MAPS
     layers = []
     for inputs, outputs in ((3, first), (first, second)):
-        convolution = nn.Conv2d(inputs, outputs, settings.kernel, padding="same")
+        convolution = nn.Conv2d(inputs, outputs, KERNEL, padding="same")
         layers += [convolution, nn.ReLU(), nn.MaxPool2d(2), nn.LocalResponseNorm(4)]
-    dense = nn.Linear(second * (size // 4) ** 2, settings.whole)
-    return nn.Sequential(*layers, nn.Flatten(), dense, nn.ReLU(), nn.Linear(settings.whole, classes))
+    dense = nn.Linear(second * (size // 4) ** 2, WHOLE)
+    return nn.Sequential(*layers, nn.Flatten(), dense, nn.ReLU(), nn.Linear(WHOLE, classes))
 
 
 def train_paper_net(
@@ -52,7 +56,6 @@ def train_paper_net(
     margin: int,
     classes: Sequence[str],
     steps: int,
-    settings: PaperNetSettings,
     seed: int,
     progress: Callable[[str], None],
 ) -> nn.Sequential:
@@ -64,10 +67,10 @@ def train_paper_net(
     size = pool.patches.shape[1] - 2 * margin
     inner = slice(margin, margin + size)
     random = np.random.default_rng(seed)
-    net = make_paper_net(len(classes), size, settings, seed)
-    optimiser = torch.optim.Adam(net.parameters(), settings.rate)
+    net = make_paper_net(len(classes), size, seed)
+    optimiser = torch.optim.Adam(net.parameters(), RATE)
     for step in range(1, steps + 1):
-        rows = np.minimum(np.searchsorted(cumulative, random.random(settings.batch)), len(truth) - 1)
+        rows = np.minimum(np.searchsorted(cumulative, random.random(BATCH)), len(truth) - 1)
         patches = np.stack([pool.patches[row, inner, inner] for row in rows])
         loss = functional.cross_entropy(net(as_inputs(patches)), torch.from_numpy(truth[rows]))
         optimiser.zero_grad()

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from time import process_time
+from typing import Final
 
 import numpy as np
 
@@ -32,14 +33,14 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class CostSettings:
-    """calls: timed calls, whose median counts; more are steadier. warm_up: calls before. starts: fresh processes
-    whose memory is measured."""
+CALLS: Final = 400
+"""Timed calls, whose median counts; more are steadier."""
 
-    calls: int = 400
-    warm_up: int = 40
-    starts: int = 3
+WARM_UP: Final = 40
+"""Calls before the timed ones."""
+
+STARTS: Final = 3
+"""Fresh processes whose memory is measured."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,39 +75,38 @@ print(json.dumps([before, peak()]))
 """What a new process runs. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
 
 
-def cost_table(models: Mapping[str, Classifier], pair: Pair, settings: CostSettings | None = None) -> Table:
+def cost_table(models: Mapping[str, Classifier], pair: Pair, calls: int = CALLS) -> Table:
     """One row a model; cells are empty where a classifier is of no known kind or the system does not tell."""
-    settings = settings or CostSettings()
     rows = tuple(
-        {"model": name, **_row(name, classifier, pair, settings)} for name, classifier in models.items()
+        {"model": name, **_row(name, classifier, pair, calls)} for name, classifier in models.items()
     )
     columns = ("model", "file_kb", "weights", "multiply_adds", "pair_ms", "model_ms", "memory_mb")
     return Table("hands_cost", "What reading costs", columns, rows, NOTE)
 
 
-def _row(name: str, classifier: Classifier, pair: Pair, settings: CostSettings) -> dict[str, Cell]:
+def _row(name: str, classifier: Classifier, pair: Pair, calls: int) -> dict[str, Cell]:
     file = SHIPPED.get(name, Path(name))
     alone = model_alone(classifier)
     with limited_threads(1):
-        whole = time_call(lambda: classifier.probabilities(pair.image, pair.boxes, pair.sides), settings)
-        own = time_call(alone, settings) if alone is not None else None
+        whole = time_call(lambda: classifier.probabilities(pair.image, pair.boxes, pair.sides), calls)
+        own = time_call(alone, calls) if alone is not None else None
     return {
         "file_kb": file.stat().st_size / 1000 if file.is_file() else None,
         "weights": count_weights(classifier),
         "multiply_adds": count_products(classifier),
         "pair_ms": whole,
         "model_ms": own,
-        "memory_mb": added_memory(name, settings) if file.is_file() else None,
+        "memory_mb": added_memory(name) if file.is_file() else None,
     }
 
 
-def time_call(call: Callable[[], object], settings: CostSettings) -> float:
+def time_call(call: Callable[[], object], calls: int) -> float:
     """Median milliseconds of processor time: in one thread those of a clock, less what others take."""
     times = []
-    for number in range(settings.warm_up + settings.calls):
+    for number in range(WARM_UP + calls):
         start = process_time()
         call()
-        if number >= settings.warm_up:
+        if number >= WARM_UP:
             times.append((process_time() - start) * 1e3)
     return percentile(times, 50)
 
@@ -159,14 +159,14 @@ def kernel_products(model: SvmModel) -> int:
     return int(pooling + length * width + count * width + count * classes)
 
 
-def added_memory(model: str, settings: CostSettings) -> float | None:
+def added_memory(model: str) -> float | None:
     """Median of what some fresh processes need (MB of 1,048,576 bytes); None where the system does not tell.
 
     Raises subprocess.CalledProcessError where one fails.
     """
     command = [sys.executable, "-c", MEMORY, model]
     added = []
-    for _ in range(settings.starts):
+    for _ in range(STARTS):
         answer = subprocess.run(command, check=True, capture_output=True, text=True)
         before, after = json.loads(answer.stdout.splitlines()[-1])
         if before is not None:

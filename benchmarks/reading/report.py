@@ -8,7 +8,7 @@ from lightgesture.benchmarks.contact_sheet import Image
 from lightgesture.benchmarks.finding.pipelines import selector_method
 from lightgesture.benchmarks.finding.regions import Progress
 from lightgesture.benchmarks.methods import Classifier
-from lightgesture.benchmarks.reading.cost import CostSettings, Pair, cost_table
+from lightgesture.benchmarks.reading.cost import Pair, cost_table
 from lightgesture.benchmarks.reading.hands import (
     HandAnswer,
     by_source_table,
@@ -37,9 +37,7 @@ VAL = "hands val"
 SURE = "hands val, none doubtful"
 
 
-def evaluate_reading(
-    models: Mapping[str, Classifier], data: Path, progress: Progress, settings: CostSettings | None = None
-) -> Report:
+def evaluate_reading(models: Mapping[str, Classifier], data: Path, progress: Progress) -> Report:
     """Every model on `hands/val`, on the labelled hands of whole frames, and on what is no whole hand.
 
     models: at least one, by the names of the rows. Parts for which the folder has no pictures are left out.
@@ -56,7 +54,7 @@ def evaluate_reading(
         side_by_side([confusion_table(own, name) for name, own in val.items()]),
         side_by_side([reliability_table(own, name) for name, own in val.items()]),
         *_trouble_tables(models, data, samples, progress),
-        cost_table(models, _pair(parts, samples), settings),
+        cost_table(models, _pair(parts, samples)),
     ]
     failures = {
         sheet_name(name, part): _failures(own)

@@ -5,7 +5,7 @@ What is read is what the product reads: its rule, its threshold, its extra doubt
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -33,20 +33,20 @@ SEEN_SETS = frozenset({"funie", "rov25", "u45"})
 """Sets of `negatives` that the shipped models learn from; of the others they have seen nothing."""
 
 
-@dataclass(frozen=True, slots=True)
-class TroubleSettings:
-    """How much trouble.
+SHIFT: Final = 0.1
+"""Of a bad box, a share of its sides."""
 
-    shift: of a box, a share of its sides. scales: factors on its sides. cuts: shares of the box beyond the picture's
-    edge. boxes: random boxes a frame. sizes: least and largest longer side of these over the frame's shorter side.
-    """
+SMALL, LARGE = 0.85, 1.15
+"""Factors on the sides of a bad box."""
 
-    shift: float = 0.1
-    scales: tuple[float, float] = (0.85, 1.15)
-    cuts: tuple[float, ...] = (0.25, 0.5)
-    boxes: int = 20
-    sizes: tuple[float, float] = (0.1, 0.6)
+CUTS: Final = (0.25, 0.5)
+"""Shares of the box beyond the picture's edge."""
 
+RANDOM_BOXES: Final = 20
+"""In each frame without a gesturing diver."""
+
+RANDOM_SIZES: Final = (0.1, 0.6)
+"""Least and largest longer side of these over the frame's shorter side."""
 
 BOXES_NOTE = (
     "lost: accuracy in exact boxes less that in these, over all of them; worst_lost: in the worst of the directions or "
@@ -64,21 +64,19 @@ RANDOM_NOTE = (
 
 def box_table(classifier: Classifier, samples: Iterable[Sample], model: str) -> Table:
     """Accuracy lost where the box is shifted or of another size."""
-    settings = TroubleSettings()
-    small, large = settings.scales
     kinds = ["exact", *(f"shifted {number}" for number in range(4)), "smaller", "larger"]
     right: Counter[str] = Counter()
     hands = 0
     for sample, box, side, truth in _token_hands(samples):
-        boxes = [box, *shifted_boxes(box, settings.shift), scaled_box(box, small), scaled_box(box, large)]
+        boxes = [box, *shifted_boxes(box, SHIFT), scaled_box(box, SMALL), scaled_box(box, LARGE)]
         rows = classifier.probabilities(read_picture(sample.path), boxes, [side] * len(boxes))
         hands += 1
         for kind, row in zip(kinds, rows, strict=True):
             right[kind] += _likeliest_token(row, classifier.classes) == truth
     groups = {
-        f"shifted by {settings.shift:.0%}": kinds[1:5],
-        f"sides × {small}": kinds[5:6],
-        f"sides × {large}": kinds[6:7],
+        f"shifted by {SHIFT:.0%}": kinds[1:5],
+        f"sides × {SMALL}": kinds[5:6],
+        f"sides × {LARGE}": kinds[6:7],
     }
     rows_out: list[dict[str, Cell]] = []
     for error, members in groups.items():
@@ -98,7 +96,7 @@ def trouble_table(classifier: Classifier, samples: Iterable[Sample], model: str)
     counts: dict[str, Counter[str]] = {}
     for sample, box, side, truth in _token_hands(samples):
         image = read_picture(sample.path)
-        for trouble, shown, seen, is_cut in _troubled(image, box, TroubleSettings()):
+        for trouble, shown, seen, is_cut in _troubled(image, box):
             row = classifier.probabilities(np.ascontiguousarray(shown), [seen], [side])[0]
             token = read_token(row, classifier.classes, is_cut, False, ReadingSettings())[0]
             word = "refused" if token is None else "right" if token == truth else "wrong"
@@ -112,9 +110,9 @@ def trouble_table(classifier: Classifier, samples: Iterable[Sample], model: str)
     return Table("hands_hidden", "Hands cut by the edge or half hidden", columns, tuple(rows), TROUBLES_NOTE)
 
 
-def _troubled(image: Image, box: Box, settings: TroubleSettings) -> Iterable[tuple[str, Image, Box, bool]]:
+def _troubled(image: Image, box: Box) -> Iterable[tuple[str, Image, Box, bool]]:
     """Name of the trouble, picture, box, and whether the picture's edge cuts the hand."""
-    for cut in settings.cuts:
+    for cut in CUTS:
         for edge in EDGES:
             yield f"{cut:.0%} beyond the edge", *cut_by_edge(image, box, edge, cut), True
     for edge in EDGES:
@@ -123,14 +121,13 @@ def _troubled(image: Image, box: Box, settings: TroubleSettings) -> Iterable[tup
 
 def random_table(classifier: Classifier, samples: Sequence[Sample], model: str) -> Table:
     """Random boxes in frames without a gesturing diver that get a token; the same boxes for every model."""
-    settings = TroubleSettings()
     boxes_of: Counter[str] = Counter()
     frames_of: Counter[str] = Counter()
     tokens_of: dict[str, Counter[str]] = {}
     for sample in samples:
         image = read_picture(sample.path)
         random = np.random.default_rng(fold_of(f"{sample.source}/{sample.path.name}", 2**32))
-        boxes = list(random_boxes((image.shape[0], image.shape[1]), settings.boxes, settings.sizes, random))
+        boxes = list(random_boxes((image.shape[0], image.shape[1]), RANDOM_BOXES, RANDOM_SIZES, random))
         rows = classifier.probabilities(image, boxes, [UNSIDED] * len(boxes))
         read = [read_token(row, classifier.classes, False, False, ReadingSettings())[0] for row in rows]
         for group in ("all",) if sample.source in SEEN_SETS else ("all", "unseen"):

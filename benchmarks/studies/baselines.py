@@ -83,15 +83,13 @@ def run_paper(args: argparse.Namespace) -> None:
     from lightgesture.training.nets.checkpoints import need_torch
 
     need_torch()
-    from lightgesture.benchmarks.paper.net import PaperNetClassifier, PaperNetSettings, train_paper_net
+    from lightgesture.benchmarks.paper.net import PaperNetClassifier, train_paper_net
     from lightgesture.benchmarks.studies.data import open_study
 
     training = training_from(args)
     data = find_data(args.data)
     study = open_study(data, Path(args.pool), training, say)
-    net = train_paper_net(
-        study.pool, training.pool.margin, study.classes, args.steps, PaperNetSettings(), args.seed, say
-    )
+    net = train_paper_net(study.pool, training.pool.margin, study.classes, args.steps, args.seed, say)
     classifier = PaperNetClassifier(net, study.classes, training.pool.patch)
     say(f"{classifier.weights} weights")
     tables = val_tables(classifier, "paper's network", data)

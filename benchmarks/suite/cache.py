@@ -17,7 +17,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 import cv2
 
@@ -35,15 +35,14 @@ from lightgesture.training.datasets import Label
 VIDEO, TRUTH = "clip.mp4", "truth.jsonl"
 
 
-@dataclass(frozen=True, slots=True)
-class CacheSettings:
-    """max_bytes: what all clips together may take; the longest unused go first. stale_s: age in seconds at which
-    what an interrupted run has left is swept away. hold: dwell of the truth in frames, as the paper's.
-    """
+MAX_BYTES: Final = 1_500_000_000
+"""What all clips together may take; the longest unused go first."""
 
-    max_bytes: int = 1_500_000_000
-    stale_s: float = 86_400.0
-    hold: int = 15
+STALE_S: Final = 86_400.0
+"""Age in seconds at which what an interrupted run has left is swept away."""
+
+HOLD: Final = 15
+"""Dwell of the truth in frames, as the paper's."""
 
 
 class Take(Protocol):
@@ -103,15 +102,14 @@ def source_digest(paths: Iterable[Path]) -> str:
     return digest.hexdigest()[:16]
 
 
-def fetch_clip(take: Take, folder: Path, settings: CacheSettings | None = None) -> Clip:
-    """The clip of a take, from `folder` or rendered now."""
-    settings = settings or CacheSettings()
-    recipe = f"{__version__} {settings.hold} {take.scenario} {take.recipe}"
+def fetch_clip(take: Take, folder: Path, max_bytes: int = MAX_BYTES) -> Clip:
+    """The clip of a take, from `folder`, which is kept below a size, or rendered now."""
+    recipe = f"{__version__} {HOLD} {take.scenario} {take.recipe}"
     place = folder / hashlib.sha256(recipe.encode()).hexdigest()[:32]
     clip = _read(take.scenario, place)
     if clip is None:
-        _render(take, place, settings)
-        _sweep(folder, place, settings)
+        _render(take, place)
+        _sweep(folder, place, max_bytes)
         clip = _read(take.scenario, place)
         if clip is None:
             raise InputError(f"{place}: was written and cannot be read; look for a full or failing disk")
@@ -135,13 +133,13 @@ def fetch_clips(takes: Sequence[Take], folder: Path, jobs: int = 1) -> Iterator[
             raise
 
 
-def _render(take: Take, place: Path, settings: CacheSettings) -> None:
+def _render(take: Take, place: Path) -> None:
     building = place.with_name(f".{uuid.uuid4().hex}.part")
     try:
         building.mkdir(parents=True)
         lines = []
         with video_writer(building / VIDEO, take.fps, take.size) as put:
-            for frame, records in with_truth(take.frames(), load_grammar(), settings.hold):
+            for frame, records in with_truth(take.frames(), load_grammar(), HOLD):
                 put(frame.image)
                 lines += [to_json_line(record) for record in records]
         text = "\n".join(lines) + "\n"
@@ -208,21 +206,21 @@ def _clip(scenario: Scenario, video: Path, records: list[dict[str, Any]]) -> Cli
     )
 
 
-def _sweep(folder: Path, kept: Path, settings: CacheSettings) -> None:
+def _sweep(folder: Path, kept: Path, max_bytes: int) -> None:
     """Remove the longest unused clips beyond the bound, and what interrupted runs have left."""
     used: list[tuple[float, int, Path]] = []
     for place in folder.iterdir():
         with suppress(OSError):
             age = place.stat().st_mtime
             if place.name.startswith("."):
-                if time.time() - age > settings.stale_s:
+                if time.time() - age > STALE_S:
                     shutil.rmtree(place, ignore_errors=True)
                 continue
             used.append((age, sum(file.stat().st_size for file in place.iterdir()), place))
     total = 0
     for _, size, place in sorted(used, reverse=True):
         total += size
-        if total > settings.max_bytes and place != kept:
+        if total > max_bytes and place != kept:
             shutil.rmtree(place, ignore_errors=True)
 
 

@@ -1,8 +1,9 @@
 """Which real hands and pictures play in the suite: chosen from `hands/val` and `negatives`, cut out and tinted."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -21,25 +22,14 @@ Row = dict[str, str]
 Random = np.random.Generator
 
 
-@dataclass(frozen=True, slots=True)
-class RealSettings:
-    """pictures: most pictures of one hand and sign that take turns in a hold. change_frames: how long each is seen.
-    fade_frames: of that, how long the next one comes up. scenery: sets of `negatives` used. zoom: how much larger
-    than a frame the picture behind is, which leaves room to move it. sway_px: standard deviation of that movement.
-    gain: bounds within which another person's hand is tinted to match. bare_arms: share.
-    """
+PICTURES: Final = 4
+"""Most pictures of one hand and sign that take turns in a hold."""
 
-    pictures: int = 4
-    change_frames: int = 9
-    fade_frames: int = 4
-    scenery: tuple[str, ...] = ("gatedet", "subbots", "waternet")
-    zoom: float = 1.15
-    sway_px: float = 8.0
-    gain: tuple[float, float] = (0.5, 2.0)
-    bare_arms: float = 0.4
+ZOOM: Final = 1.15
+"""How much larger than a frame the picture behind is, which leaves room to move it."""
 
-
-SETTINGS = RealSettings()
+GAIN: Final = (0.5, 2.0)
+"""Bounds within which another person's hand is tinted to match."""
 
 
 def group_people(rows: Sequence[Row]) -> list[dict[str, list[Row]]]:
@@ -67,7 +57,7 @@ def cast(
         own = owner.get(token, [])
         if not own:
             raise InputError(f"hands/val holds no picture of {token}; --data must name a complete folder")
-        chosen = rng.permutation(len(own))[: SETTINGS.pictures]
+        chosen = rng.permutation(len(own))[:PICTURES]
         hands[token] = tuple(own[int(index)] for index in chosen)
     return hands
 
@@ -96,14 +86,14 @@ def load_hands(data: Path, chosen: dict[str, tuple[Row, ...]]) -> dict[str, dict
 
 def _tinted(cutout: Cutout, target: tuple[float, float, float]) -> Cutout:
     """The hand with the mean colour of another, within bounds: one diver has one skin."""
-    gain = np.clip(np.array(target) / np.maximum(skin_colour(cutout), 1e-3), *SETTINGS.gain)
+    gain = np.clip(np.array(target) / np.maximum(skin_colour(cutout), 1e-3), *GAIN)
     return replace(cutout, image=encode(decode(cutout.image) * gain.astype(np.float32)))
 
 
 def load_backdrop(path: Path, frame_size: tuple[int, int]) -> Float32:
     """The picture behind, linear, cut to the frame's shape and larger than it by the zoom."""
     picture = read_picture(path)
-    width, height = (round(side * SETTINGS.zoom) for side in frame_size)
+    width, height = (round(side * ZOOM) for side in frame_size)
     scale = max(width / picture.shape[1], height / picture.shape[0])
     size = max(width, round(picture.shape[1] * scale)), max(height, round(picture.shape[0] * scale))
     large = cv2.resize(picture, size, interpolation=cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR)

@@ -9,6 +9,7 @@ on. Nothing of it is ever part of the package: clips stay in the user's cache.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -17,7 +18,6 @@ import lightgesture.synth
 from lightgesture.benchmarks.suite import cast as suite_cast
 from lightgesture.benchmarks.suite.cache import Take, source_digest
 from lightgesture.benchmarks.suite.cast import (
-    SETTINGS,
     Row,
     cast,
     group_people,
@@ -51,6 +51,21 @@ from lightgesture.training.pictures.diver_composites import body_look
 from lightgesture.training.pictures.real_hands import PastedHand, Shown, draw_diver
 from lightgesture.training.pictures.surroundings import light_under_water, water_of_picture
 
+SCENERY: Final = ("gatedet", "subbots", "waternet")
+"""Sets of `negatives` that are seen behind."""
+
+CHANGE_FRAMES: Final = 9
+"""How long each picture of a hand is seen."""
+
+FADE_FRAMES: Final = 4
+"""Of that, how long the next one comes up."""
+
+SWAY_PX: Final = 8.0
+"""Standard deviation of the movement of the picture behind, pixels."""
+
+BARE_ARMS: Final = 0.4
+"""Share of the divers without sleeves."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RealTake:
@@ -77,7 +92,7 @@ def real_takes(data: Path) -> list[Take]:
     pictures = [
         row
         for row in read_table(data, "negatives/negatives.csv")
-        if row["set"] in SETTINGS.scenery and row["person"] == "0"
+        if row["set"] in SCENERY and row["person"] == "0"
     ]
     if not pictures:
         return []
@@ -128,7 +143,7 @@ class _RealScene:
         self._water = water_of_picture(typical, spec.diver.distance_mm / 1000.0, rng)
         self._light = light_under_water(self._water, rng)
         first = next(iter(self._hands["left"].values()))[0]
-        self._look = body_look(first, True, SETTINGS.bare_arms, rng)
+        self._look = body_look(first, True, BARE_ARMS, rng)
         camera = CameraLook(target=float(typical.mean()), balance=0.0, shot=0.0006 * spec.camera.noise,
                             read=0.004 * spec.camera.noise, blur_px=spec.camera.blur_px)  # fmt: skip
         self._sensor = Sensor(camera, spec.size, rng)
@@ -153,7 +168,7 @@ class _RealScene:
         """The window of the picture behind that is seen at a time, linear."""
         width, height = self._take.size
         room = np.array([self._behind.shape[1] - width, self._behind.shape[0] - height]) / 2.0
-        corner = np.clip(room + SETTINGS.sway_px * self._sway.at(time_s), 0.0, 2.0 * room)
+        corner = np.clip(room + SWAY_PX * self._sway.at(time_s), 0.0, 2.0 * room)
         move = np.array([[1.0, 0.0, -corner[0]], [0.0, 1.0, -corner[1]]], np.float32)
         return np.asarray(cv2.warpAffine(self._behind, move, (width, height)), np.float32)
 
@@ -172,8 +187,8 @@ class _RealScene:
 
 def _taking_turns(pictures: Sequence[Cutout], index: int) -> list[tuple[Cutout, float]]:
     """What is seen in frame `index` of pictures that take turns, with weights that sum to one."""
-    turn, frame = divmod(index, SETTINGS.change_frames)
-    fading = max(frame - SETTINGS.change_frames + SETTINGS.fade_frames + 1, 0) / (SETTINGS.fade_frames + 1)
+    turn, frame = divmod(index, CHANGE_FRAMES)
+    fading = max(frame - CHANGE_FRAMES + FADE_FRAMES + 1, 0) / (FADE_FRAMES + 1)
     now, later = pictures[turn % len(pictures)], pictures[(turn + 1) % len(pictures)]
     return [(now, 1.0)] if fading == 0.0 or now is later else [(now, 1.0 - fading), (later, fading)]
 

@@ -11,7 +11,7 @@ from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_til
 from lightgesture.benchmarks.finding.regions import MAX_BOXES
 from lightgesture.benchmarks.methods import Decoded, Method
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite.cache import CacheSettings, Clip, Take, fetch_clips
+from lightgesture.benchmarks.suite.cache import HOLD, Clip, Take, fetch_clips
 from lightgesture.benchmarks.suite.scenarios import (
     FPS,
     NEGATIVE,
@@ -33,7 +33,7 @@ from lightgesture.training.datasets import Label
 Progress = Callable[[Iterable[Take], str], Iterable[Take]]
 """Passes takes on and shows how far they are, under a heading."""
 
-DWELL_S = (CacheSettings().hold - 1) / FPS
+DWELL_S = (HOLD - 1) / FPS
 """From the first frame of a sign to the one in which a flawless reader accepts it."""
 
 

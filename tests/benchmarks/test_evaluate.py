@@ -42,7 +42,7 @@ def command(monkeypatch, data, fake_classifier, fake_method):
     monkeypatch.setattr(accuracy, "product", make_pipeline)
     monkeypatch.setattr(finding_report, "selector_method", lambda name: copy_named(fake_method, name))
     monkeypatch.setattr(reading_report, "selector_method", lambda name: copy_named(fake_method, name))
-    monkeypatch.setattr(reading_cost, "added_memory", lambda name, settings: 7.5)
+    monkeypatch.setattr(reading_cost, "added_memory", lambda name: 7.5)
     parser = argparse.ArgumentParser()
     evaluate.add_arguments(parser)
 

@@ -23,8 +23,9 @@ from lightgesture.benchmarks.finding.latency import (
     time_finding,
     without_litert,
 )
+from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector_file import load_learned
-from lightgesture.features.net.reference import NumpyRunner
+from lightgesture.features.net.network import NetworkError
 from lightgesture.features.net.runner import Network
 from lightgesture.sources import open_source
 
@@ -58,15 +59,17 @@ def test_without_the_run_time_the_nets_run_by_numpy():
     before = {name for name in sys.modules if name.startswith(LITERT)}
     network = load_learned().locator
     with without_litert():
-        assert isinstance(Network(network)._runner, NumpyRunner)
+        Network(network)
+        with pytest.raises(NetworkError, match="not installed"):
+            Network(network, "litert")
     assert {name for name in sys.modules if name.startswith(LITERT)} == before
     pytest.importorskip(LITERT)
-    assert not isinstance(Network(network)._runner, NumpyRunner)
+    Network(network, "litert")
 
 
 def test_both_run_times_find_the_same(frames):
     pytest.importorskip(LITERT)
-    colour = finding_latency.TimedFinding(open_stage(Engine("learned")))._colour.process(frames[0])
+    colour = ColourStage().process(frames[0])
     found = [open_stage(Engine("learned", uses)).process(colour) for uses in (True, False)]
     first, second = ([region.box for region in one.regions] for one in found)
     assert len(first) >= 2

@@ -14,9 +14,10 @@ from lightgesture.benchmarks.finding.region_tables import (
     regions_table,
     tokens_table,
 )
-from lightgesture.benchmarks.finding.regions import Progress, Run, run_methods
+from lightgesture.benchmarks.finding.regions import Run, run_methods
 from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, product
 from lightgesture.benchmarks.paper.bank import build_bank
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.tables import Table
 from lightgesture.features.find.selector import SELECTORS, SelectorName

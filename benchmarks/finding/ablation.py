@@ -1,8 +1,7 @@
 """`evaluate regions --ablation`: what each stage of finding hands buys, in one row per variant of the product."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Protocol, TypeVar
 
 from lightgesture.benchmarks.accuracy import Report, frame_samples
 from lightgesture.benchmarks.finding.ablation_stages import ablations
@@ -10,18 +9,10 @@ from lightgesture.benchmarks.finding.clips import FindingAnswer, find_in_clips
 from lightgesture.benchmarks.finding.difficulties import difficulty_takes
 from lightgesture.benchmarks.finding.regions import MAX_BOXES, SINGLE, Run, run_methods
 from lightgesture.benchmarks.finding.tables import overlaps
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import percentile, share, total
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.training.datasets import read_negatives
-
-Item = TypeVar("Item")
-
-
-class Progress(Protocol):
-    """Passes items on and shows how far they are, under a heading."""
-
-    def __call__(self, items: Iterable[Item], heading: str, /) -> Iterable[Item]: ...
-
 
 NOTE = (
     "groups: share of the labelled hands that were found (IoU >= 0.5), in single pictures or, where so named, in "

@@ -10,6 +10,7 @@ from lightgesture.benchmarks.finding.difficulties import GLOVES, difficulty_take
 from lightgesture.benchmarks.finding.pipelines import selector_method
 from lightgesture.benchmarks.finding.regions import MAX_BOXES
 from lightgesture.benchmarks.methods import Method
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import Reading, Score, matched_readings, percentile, share, total
 from lightgesture.benchmarks.suite.cache import Clip, Take, fetch_clip, fetch_clips
 from lightgesture.benchmarks.suite.scenarios import LAND, WATER, Scenario
@@ -23,9 +24,6 @@ from lightgesture.training.datasets import Label
 
 BOTH = 2
 """Hands of a frame from which a profile is learnt: one without a label would count as something else."""
-
-Progress = Callable[[Iterable[Take], str], Iterable[Take]]
-"""Passes takes on and shows how far they are, under a heading."""
 
 
 def evaluate_clips(
@@ -92,7 +90,7 @@ def find_in_clips(
     methods: Methods,
     takes: Sequence[Take],
     folder: Path,
-    progress: Callable[[Iterable[Take], str], Iterable[Take]],
+    progress: Progress,
     jobs: int = 1,
 ) -> list[FindingAnswer]:
     """Every method on every take; `folder` is the cache, `jobs` the processes that render what it lacks."""

@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.finding.regions import Progress, Run, run_sequence, run_single
+from lightgesture.benchmarks.finding.regions import Run, run_sequence, run_single
 from lightgesture.benchmarks.methods import Image, PipelineMethod
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import SELECTORS, RegionStage, SelectorName
 from lightgesture.features.find.selector_file import load_classical, load_learned

@@ -4,10 +4,11 @@ A frame may be read alone ("single") or, where a group is an ordered sequence, w
 before it ("sequence"). At most two boxes a frame count.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from lightgesture.benchmarks.methods import Decoded, Method
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import Reading, Score, score_frame, total
 from lightgesture.sources import DEFAULT_FPS, read_picture
 from lightgesture.training.datasets import Sample, group_samples, is_sequence
@@ -17,9 +18,6 @@ MAX_BOXES = 2
 
 SINGLE = "single"
 SEQUENCE = "sequence"
-
-Progress = Callable[[Iterable[Sample], str], Iterable[Sample]]
-"""Passes samples on and shows how far they are, under a heading."""
 
 
 @dataclass(frozen=True, slots=True)

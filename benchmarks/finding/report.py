@@ -7,9 +7,10 @@ from pathlib import Path
 from lightgesture.benchmarks.accuracy import Failure, Report, frame_samples, sheet_name
 from lightgesture.benchmarks.finding.pipelines import run_left_out, selector_method
 from lightgesture.benchmarks.finding.recorded import read_recorded, recorded_runs
-from lightgesture.benchmarks.finding.regions import Progress, Run, run_methods
+from lightgesture.benchmarks.finding.regions import Run, run_methods
 from lightgesture.benchmarks.finding.tables import finding_tables
 from lightgesture.benchmarks.methods import Method
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.features.find.selector import SELECTORS
 from lightgesture.training.datasets import Sample, read_negatives, read_webcam
 

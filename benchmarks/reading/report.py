@@ -6,8 +6,8 @@ from pathlib import Path
 from lightgesture.benchmarks.accuracy import Failure, Report, frame_samples, sheet_name
 from lightgesture.benchmarks.contact_sheet import Image
 from lightgesture.benchmarks.finding.pipelines import selector_method
-from lightgesture.benchmarks.finding.regions import Progress
 from lightgesture.benchmarks.methods import Classifier
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.reading.cost import Pair, cost_table
 from lightgesture.benchmarks.reading.hands import (
     HandAnswer,

@@ -3,13 +3,14 @@
 `lightgesture evaluate suite` is the thin command in front of this module.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_sheet
 from lightgesture.benchmarks.finding.regions import MAX_BOXES
 from lightgesture.benchmarks.methods import Decoded, Method
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.suite.cache import HOLD, Clip, Take, fetch_clips
 from lightgesture.benchmarks.suite.scenarios import (
@@ -29,9 +30,6 @@ from lightgesture.benchmarks.suite.scoring import (
 from lightgesture.sources import open_source
 from lightgesture.synth.script import sentence_words
 from lightgesture.training.datasets import Label
-
-Progress = Callable[[Iterable[Take], str], Iterable[Take]]
-"""Passes takes on and shows how far they are, under a heading."""
 
 DWELL_S = (HOLD - 1) / FPS
 """From the first frame of a sign to the one in which a flawless reader accepts it."""

@@ -64,6 +64,18 @@ class TimedPipeline(Pipeline):
         self._clock = self.clock
 
 
+PEAK_MEMORY: Final = """
+def peak_memory():
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
+    except (OSError, StopIteration):
+        return None
+"""
+"""For programs that run in a new process: a function of the most memory that the process had, MB of 1,048,576 bytes,
+None where the system does not tell. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
+
+
 @contextmanager
 def limited_threads(count: int) -> Iterator[None]:
     """Give OpenCV and the linear algebra behind NumPy so many threads, and restore what was set before.

@@ -145,6 +145,11 @@ def private_names_of_the_house() -> frozenset[str]:
     return frozenset(name for file in python_files(*BELOW) for name in defined(tree_of(file)))
 
 
+def last_name(node: ast.expr) -> str:
+    """The name at the end of an expression with dots, empty for another one."""
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
 def is_self(node: ast.expr) -> bool:
     return isinstance(node, ast.Name) and node.id in ("self", "cls")
 
@@ -177,7 +182,7 @@ def inherited_uses(files: list[Path]) -> Iterator[str]:
     }
     for file, node in classes.values():
         for base in node.bases:
-            other, parent = classes.get(ast.unparse(base).rpartition(".")[2], (file, node))
+            other, parent = classes.get(last_name(base), (file, node))
             if other.parts[0] != file.parts[0]:
                 for name in sorted(private_parts(node) & private_parts(parent)):
                     yield f"{file}:{node.lineno} {node.name} touches {name} of its base {parent.name}"

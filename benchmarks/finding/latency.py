@@ -15,7 +15,7 @@ import numpy as np
 from lightgesture.benchmarks.finding.pipelines import FindingPipeline, Stages
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.benchmarks.timing import SIZE, WARM_UP, Image, RecordingClock, limited_threads
+from lightgesture.benchmarks.timing import PEAK_MEMORY, SIZE, WARM_UP, Image, RecordingClock, limited_threads
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.types import Candidates
@@ -155,15 +155,9 @@ import numpy
 from lightgesture.pipeline import Pipeline
 pipeline = Pipeline(selector="{selector}")
 pipeline.process(numpy.random.default_rng(0).integers(0, 255, ({height}, {width}, 3), numpy.uint8), 0.0)
-ready = time.time()
-try:
-    with open("/proc/self/status", encoding="ascii") as status:
-        peak = next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
-except (OSError, StopIteration):
-    peak = None
-print(json.dumps([ready, peak]))
+print(json.dumps([time.time(), peak_memory()]))
 """
-"""What a new process runs. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
+"""What a new process runs, after PEAK_MEMORY."""
 
 
 def fresh_start(engine: Engine) -> tuple[float, float | None]:
@@ -172,7 +166,7 @@ def fresh_start(engine: Engine) -> tuple[float, float | None]:
     Raises subprocess.CalledProcessError where it fails.
     """
     width, height = SIZE
-    code = FRESH_START.format(
+    code = PEAK_MEMORY + FRESH_START.format(
         hides=not engine.uses_litert, litert=LITERT, selector=engine.selector, width=width, height=height
     )
     start = time.time()

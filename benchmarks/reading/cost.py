@@ -14,7 +14,7 @@ import numpy as np
 from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
-from lightgesture.benchmarks.timing import Image, limited_threads
+from lightgesture.benchmarks.timing import PEAK_MEMORY, Image, limited_threads
 from lightgesture.features.net.nodes import multiply_adds
 from lightgesture.features.net.runner import Network
 from lightgesture.features.types import Box
@@ -52,27 +52,19 @@ class Pair:
     sides: tuple[str, str] = ("right", "left")
 
 
-MEMORY = """
+MEMORY = f"""{PEAK_MEMORY}
 import json, sys
 import cv2, numpy
-
-def peak():
-    try:
-        with open("/proc/self/status", encoding="ascii") as status:
-            return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
-    except (OSError, StopIteration):
-        return None
-
 cv2.setNumThreads(1)
 picture = numpy.random.default_rng(0).integers(0, 255, (480, 640, 3), numpy.uint8)
 cv2.resize(picture, (32, 32), interpolation=cv2.INTER_AREA)
-before = peak()
+before = peak_memory()
 from lightgesture.models import load_classifier
 classifier = load_classifier(sys.argv[1])
 classifier.probabilities(picture, [(100, 100, 80, 90), (400, 100, 80, 90)], ["right", "left"])
-print(json.dumps([before, peak()]))
+print(json.dumps([before, peak_memory()]))
 """
-"""What a new process runs. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
+"""What a new process runs."""
 
 
 def cost_table(models: Mapping[str, Classifier], pair: Pair, calls: int = CALLS) -> Table:

@@ -4,7 +4,7 @@ Everything is read from the sources by `ast`; imports within functions and for t
 """
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -12,6 +12,12 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 APPLICATION = "lightgesture"
+KINDS = (
+    *(ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef),
+    *(ast.Attribute, ast.Name, ast.Call),
+)
+"""Nodes that are looked at."""
+
 BELOW = {
     "fsm": (),
     "features": (),
@@ -59,9 +65,15 @@ def tree_of(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
-def imports(node: ast.AST) -> Iterator[tuple[str, ast.stmt]]:
-    """What is imported below a node, as names with dots, and by which statement."""
-    for part in ast.walk(node):
+@cache
+def nodes_of(file: Path) -> tuple[ast.AST, ...]:
+    """All nodes of a module of the kinds that are asked for here."""
+    return tuple(node for node in ast.walk(tree_of(file)) if isinstance(node, KINDS))
+
+
+def imports(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, ast.stmt]]:
+    """What is imported by nodes, as names with dots, and by which statement."""
+    for part in nodes:
         if isinstance(part, ast.Import):
             yield from ((alias.name, part) for alias in part.names)
         elif isinstance(part, ast.ImportFrom):
@@ -89,7 +101,7 @@ def test_imports_go_down_the_house(room):
     wrong = [
         f"{place(file, node)} imports {name}"
         for file in files
-        for name, node in imports(tree_of(file))
+        for name, node in imports(nodes_of(file))
         if room_of(name) not in (None, room, *BELOW[room])
     ]
     assert wrong == []
@@ -115,7 +127,7 @@ def test_heavy_libraries_are_imported_where_they_are_needed():
         for file in python_files(*BELOW)
         for part in module_level(tree_of(file))
         if isinstance(part, (ast.Import, ast.ImportFrom))
-        for name, _ in imports(part)
+        for name, _ in imports([part])
         if (library := name.partition(".")[0]) in HEAVY
         and not any(file.relative_to(ROOT).match(allowed) for allowed in AT_MODULE_LEVEL.get(library, ()))
     ]
@@ -126,9 +138,9 @@ def is_private(name: str) -> bool:
     return name.startswith("_") and not name.startswith("__") and name != "_"
 
 
-def defined(tree: ast.Module) -> Iterator[str]:
+def defined(file: Path) -> Iterator[str]:
     """Underscored names that a module defines: functions, classes, constants, fields, what is set on an object."""
-    for node in ast.walk(tree):
+    for node in nodes_of(file):
         names: list[str] = []
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
             names = [node.name]
@@ -142,7 +154,7 @@ def defined(tree: ast.Module) -> Iterator[str]:
 @cache
 def private_names_of_the_house() -> frozenset[str]:
     """What is private elsewhere, as in scikit-learn's trees, is no matter of this house."""
-    return frozenset(name for file in python_files(*BELOW) for name in defined(tree_of(file)))
+    return frozenset(name for file in python_files(*BELOW) for name in defined(file))
 
 
 def last_name(node: ast.expr) -> str:
@@ -156,17 +168,14 @@ def is_self(node: ast.expr) -> bool:
 
 def private_uses(file: Path) -> Iterator[str]:
     """Where a module touches an underscored name of another: by a dot, by an import, or by `setattr`."""
-    tree = tree_of(file)
-    others = private_names_of_the_house() - set(defined(tree))
-    for node in ast.walk(tree):
+    others = private_names_of_the_house() - set(defined(file))
+    for node in nodes_of(file):
         names: list[str] = []
         if isinstance(node, ast.Attribute) and not is_self(node.value):
             names = [node.attr]
         elif isinstance(node, ast.ImportFrom):
             names = [alias.name for alias in node.names]
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(
-            ("setattr", "getattr", "delattr")
-        ):
+        elif isinstance(node, ast.Call) and last_name(node.func) in ("setattr", "getattr", "delattr"):
             words = [str(one.value) for one in node.args if isinstance(one, ast.Constant)]
             names = [word.rpartition(".")[2] for word in words]
         yield from (f"{place(file, node)} touches {name}" for name in names if name in others)
@@ -177,7 +186,7 @@ def inherited_uses(files: list[Path]) -> Iterator[str]:
     classes = {
         node.name: (file.relative_to(ROOT), node)
         for file in files
-        for node in ast.walk(tree_of(file))
+        for node in nodes_of(file)
         if isinstance(node, ast.ClassDef)
     }
     for file, node in classes.values():

@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.hand_bank import HandBank
-from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
+from lightgesture.benchmarks.paper.bank import HandBank
+from lightgesture.benchmarks.paper.chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box

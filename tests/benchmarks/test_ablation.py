@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks.ablation import ablation_table
-from lightgesture.benchmarks.ablation_stages import (
+from lightgesture.benchmarks.finding.ablation import ablation_table
+from lightgesture.benchmarks.finding.ablation_stages import (
     ONE_THRESHOLD,
     ChangedStage,
     ClassicalSearch,
@@ -22,8 +22,8 @@ from lightgesture.benchmarks.ablation_stages import (
     tree_scores,
     without_pairs,
 )
-from lightgesture.benchmarks.finding_suite import FindingAnswer
-from lightgesture.benchmarks.regions import Run, make_answer
+from lightgesture.benchmarks.finding.clips import FindingAnswer
+from lightgesture.benchmarks.finding.regions import Run, make_answer
 from lightgesture.benchmarks.scorer import Reading, score_frame
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.classical import ClassicalSelector

@@ -7,12 +7,18 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import finding
-from lightgesture.benchmarks.finding import NoReader, Stages, run_left_out, selector_method, variant
-from lightgesture.benchmarks.finding_tables import finding_tables, found_table
-from lightgesture.benchmarks.regions import Run, make_answer, run_methods, run_single
+from lightgesture.benchmarks.finding import pipelines as finding
+from lightgesture.benchmarks.finding.pipelines import (
+    NoReader,
+    Stages,
+    run_left_out,
+    selector_method,
+    shared_parts,
+    variant,
+)
+from lightgesture.benchmarks.finding.regions import Run, make_answer, run_methods, run_single
+from lightgesture.benchmarks.finding.tables import finding_tables, found_table
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.shared_parts import shared_parts
 from lightgesture.features.find.selector import RegionStage
 from lightgesture.features.find.selector_file import (
     BUNDLED,

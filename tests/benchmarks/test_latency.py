@@ -13,13 +13,13 @@ from lightgesture.benchmarks.tables import Table
 from lightgesture.benchmarks.timing import (
     FRAME,
     SINGLE,
-    LatencySettings,
+    WARM_UP,
     limited_threads,
     time_calls,
 )
 from lightgesture.stage_clock import StageClock
 
-QUICK = LatencySettings(rounds=2, warm_up=3)
+ROUNDS = 2
 
 
 class FakePipeline:
@@ -61,7 +61,7 @@ def fake_pipelines(monkeypatch):
 
 @pytest.fixture
 def no_starts(monkeypatch):
-    monkeypatch.setattr(latency, "fresh_starts", lambda _: Table("starts", "Starts", ("seconds",), ()))
+    monkeypatch.setattr(latency, "fresh_starts", lambda: Table("starts", "Starts", ("seconds",), ()))
 
 
 @pytest.fixture
@@ -72,13 +72,13 @@ def no_sample(monkeypatch, tmp_path):
 def test_warm_up_is_run_but_not_counted():
     seen = []
     frames = [np.zeros((2, 2, 3), np.uint8)] * 2
-    assert len(time_calls(seen.append, frames, QUICK)) == 4
-    assert len(seen) == 7
+    assert len(time_calls(seen.append, frames, ROUNDS)) == 4
+    assert len(seen) == WARM_UP + 4
 
 
 def test_a_row_per_clip_threads_and_stage(fake_pipelines):
     frames = [np.zeros((480, 640, 3), np.uint8)] * 5
-    rows = measure({"clip": frames}, "cnn", FakeChain, QUICK)
+    rows = measure({"clip": frames}, "cnn", FakeChain, ROUNDS)
     stages = ["colour", "tracks", FRAME, SINGLE, PAPER]
     assert [(row["threads"], row["stage"]) for row in rows] == [
         (n, stage) for n in (1, 2) for stage in stages
@@ -89,8 +89,8 @@ def test_a_row_per_clip_threads_and_stage(fake_pipelines):
 
 
 def test_time_goes_on_from_round_to_round(fake_pipelines):
-    measure({"clip": [np.zeros((480, 640, 3), np.uint8)] * 2}, "cnn", None, QUICK)
-    assert fake_pipelines[0].last == pytest.approx(6 / 30)
+    measure({"clip": [np.zeros((480, 640, 3), np.uint8)] * 2}, "cnn", None, ROUNDS)
+    assert fake_pipelines[0].last == pytest.approx((WARM_UP + 3) / 30)
 
 
 def test_threads_are_restored_even_after_an_error():
@@ -110,7 +110,7 @@ def test_threads_are_restored_even_after_an_error():
 
 @pytest.mark.usefixtures("no_sample")
 def test_clips_are_scaled_to_one_size(data):
-    clips = read_clips(data, QUICK)
+    clips = read_clips(data)
     assert list(clips) == ["hover"]
     assert [frame.shape for frame in clips["hover"]] == [(480, 640, 3)] * 2
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from lightgesture.benchmarks import methods
-from lightgesture.benchmarks.hand_bank import HandBank, hu_moments, largest_contour
 from lightgesture.benchmarks.methods import Decoded, PaperMethod, PipelineMethod, product
+from lightgesture.benchmarks.paper.bank import HandBank, hu_moments, largest_contour
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.fsm import Decoder, Signs, load_grammar
 from lightgesture.records import FrameRecord, Hand, SummaryRecord

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.benchmarks.suite_scenarios import (
+from lightgesture.benchmarks.suite.scenarios import (
     LAND,
     NEGATIVE,
     REAL,

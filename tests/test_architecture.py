@@ -36,8 +36,8 @@ HEAVY = frozenset(
 
 AT_MODULE_LEVEL = {
     "pydantic": (
-        "fsm/document.py",
-        "fsm/schema.py",
+        "fsm/language/document.py",
+        "fsm/language/schema.py",
         "lightgesture/config/*.py",
         "mavlink_map.py",
         "synth/*.py",

@@ -12,6 +12,7 @@ from typing import Final
 from lightgesture.benchmarks.census.frame import FRAMES, FrameCounts, frame_counts
 from lightgesture.benchmarks.census.sources import box_holders, count_lines, import_closure, settings_fields
 from lightgesture.benchmarks.tables import Cell, Table, to_text
+from lightgesture.cli import exit_status
 from lightgesture.console import native_messages_muted, print_line
 from lightgesture.errors import ExitStatus
 
@@ -55,14 +56,8 @@ def tables(frame: FrameCounts) -> list[Table]:
     ]
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """The command line; returns the exit status."""
-    parser = argparse.ArgumentParser(
-        prog="python -m lightgesture.benchmarks.census",
-        description="How much code a frame goes through, and how much there is.",
-    )
-    parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
-    args = parser.parse_args(argv)
+def run(args: argparse.Namespace) -> int:
+    """Count and print; 0 when all was done."""
     with native_messages_muted():
         found = tables(frame_counts())
     if args.json:
@@ -71,6 +66,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     else:
         print_line(to_text(found))
     return ExitStatus.OK
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m lightgesture.benchmarks.census",
+        description="How much code a frame goes through, and how much there is.",
+    )
+    parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
+    args = parser.parse_args(argv)
+    return exit_status(lambda: run(args), "nothing was printed")
 
 
 if __name__ == "__main__":

@@ -4,13 +4,14 @@ import numpy as np
 import pytest
 
 from lightgesture.fsm import Instruction, Word, load_grammar
-from lightgesture.synth.activities import ACTIVITIES
 from lightgesture.synth.body import Camera
 from lightgesture.synth.diver import draw_arm_hand
 from lightgesture.synth.motion import Performance, Style
+from lightgesture.synth.output import with_truth
 from lightgesture.synth.poses import TOKENS
 from lightgesture.synth.scene import Scene, diver_look
 from lightgesture.synth.script import (
+    ACTIVITIES,
     Hold,
     Timing,
     make_timeline,
@@ -21,7 +22,6 @@ from lightgesture.synth.script import (
 )
 from lightgesture.synth.shading import Light
 from lightgesture.synth.spec import DiverSpec, MotionSpec, SceneSpec, WaterSpec, load_scene_spec
-from lightgesture.synth.truth import with_truth
 from lightgesture.synth.variety import draw_sentence, draw_spec, stream
 
 GRAMMAR = load_grammar()
@@ -181,7 +181,7 @@ def test_busy_hands_sign_nothing(name):
     scene = Scene(spec)
     hold = scene.timeline[1]
     assert hold.activity == name
-    frames = [scene.frame(index) for index in range(0, scene.frame_count, 8)]
+    frames = [scene.frame(index) for index in range(0, scene.frame_count, 16)]
     pairs = [{hand.side: hand.token for hand in frame.record.hands} for frame in frames]
     assert not any(pair.get("left") and pair.get("right") for pair in pairs)
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import BodyLook, Camera, render_body
-from lightgesture.synth.camera import photographed
+from lightgesture.synth.camera import draw_camera, photographed
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -216,7 +216,7 @@ class CropMaker:
         scale = side / whole
         interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
         picture = np.asarray(cv2.resize(picture, (side, side), interpolation=interpolation), np.float32)
-        image = photographed(picture, rng)
+        image = photographed(picture, draw_camera(rng), rng)
         offset = (-round(corner[0]), -round(corner[1]))
         x, y, width, height = hand.box
         box = (

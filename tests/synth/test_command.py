@@ -73,6 +73,7 @@ def test_the_sample_signs_its_sentence_with_both_hands_in_view():
     assert {hand.side: hand.token for hand in frame.record.hands} == {"left": "ok", "right": "0"}
 
 
+@pytest.mark.slow
 def test_several_processes_render_the_same_frames():
     spec = SceneSpec(size=(80, 64), sentences=(), water=WaterSpec(kind="none"))
     scene = Scene(spec)

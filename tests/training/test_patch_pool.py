@@ -53,18 +53,28 @@ def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
     assert any(source.startswith("synthetic") for source in pool.sources)
 
 
-def test_processes_and_reruns_change_nothing(originals, tmp_path):
-    # Rendered hands are left to their own test: other processes would draw all surroundings.
+def assert_same(one, other):
+    np.testing.assert_array_equal(one.patches, other.patches)
+    np.testing.assert_array_equal(one.contours, other.contours)
+    assert (one.tokens == other.tokens).all()
+
+
+def test_reruns_change_nothing_and_another_seed_does(originals, tmp_path):
     settings = replace(SETTINGS, rendered=0)
-    alone = make_pool(originals, settings, 3, 1, tmp_path / "a", lambda *_: None)
-    shared = make_pool(originals, settings, 3, 2, tmp_path / "b", lambda *_: None)
-    again = make_pool(originals, settings, 3, 1, tmp_path / "a", pytest.fail)
+    first = make_pool(originals, settings, 3, 1, tmp_path / "a", lambda *_: None)
+    assert_same(first, make_pool(originals, settings, 3, 1, tmp_path / "a", pytest.fail))
     other = make_pool(originals, settings, 4, 1, tmp_path / "c", lambda *_: None)
-    for pool in (shared, again):
-        np.testing.assert_array_equal(alone.patches, pool.patches)
-        np.testing.assert_array_equal(alone.contours, pool.contours)
-        assert (alone.tokens == pool.tokens).all()
-    assert len(other.patches) != len(alone.patches) or (other.patches != alone.patches).any()
+    assert len(other.patches) != len(first.patches) or (other.patches != first.patches).any()
+
+
+@pytest.mark.slow
+def test_processes_change_nothing(originals, tmp_path, monkeypatch):
+    # Other processes draw all surroundings.
+    monkeypatch.undo()
+    pools = [
+        make_pool(originals, SETTINGS, 3, jobs, tmp_path / f"{jobs}", lambda *_: None) for jobs in (1, 2)
+    ]
+    assert_same(*pools)
 
 
 def test_many_patches_are_standardised_as_the_board_does_one():

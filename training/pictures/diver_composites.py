@@ -8,7 +8,7 @@ import numpy as np
 
 from lightgesture.features.types import Box, Image
 from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
-from lightgesture.synth.camera import CameraLook, Sensor
+from lightgesture.synth.camera import CameraLook, photographed
 from lightgesture.synth.diver import ArmState, DiverState, rotation_matrix
 from lightgesture.synth.hand import HAND_LENGTH_MM
 from lightgesture.synth.raster import Float32
@@ -246,4 +246,4 @@ def photograph(picture: Float32, rng: np.random.Generator) -> Image:
         motion_px=float(rng.uniform(2.0, 4.0)) if rng.random() < 0.15 else 0.0,
         jpeg=int(rng.integers(35, 96)) if rng.random() < 0.5 else 0,
     )
-    return Sensor(look, (picture.shape[1], picture.shape[0]), rng, margin=0).expose(picture, 0, 0.0)
+    return photographed(picture, look, rng)

@@ -78,7 +78,7 @@ class DiverSpec(_Part):
     suit: Colour = (0.02, 0.017, 0.014)
     """Linear BGR colour, 0 to 1 each."""
     accent: Colour = (0.25, 0.06, 0.02)
-    """The same of mask, snorkel and stripes."""
+    """The same of collar, mask and snorkel."""
     sleeve_mm: Annotated[float, Field(ge=5.0, le=120.0)] | None = 35.0
     """Bare forearm before the sleeve, 5 to 120 mm; none for bare arms."""
     hood: bool = True

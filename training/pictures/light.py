@@ -17,6 +17,8 @@ from lightgesture.synth.water import WaterPath
 Float = NDArray[np.float32]
 Random = np.random.Generator
 
+SCENE_GAMMA: Final = 1.6
+"""Exponent that makes the values of a whole picture about linear."""
 DEPTH: Final = (0.2, 2.0)
 """Optical depth in red of the water before a hand."""
 MURK: Final = (0.0, 1.0)
@@ -71,7 +73,7 @@ def relight(image: Image, mask: Float | None, settings: LightSettings, random: R
 
 
 def path_before_hand(random: Random) -> WaterPath:
-    """Water for a copy of a hand: little before some, all that a robot may meet before others."""
+    """Water before a copy of a hand, whose values are taken as they are."""
     depth = random.uniform(*DEPTH)
     green = random.uniform(0.1, 0.5)
     blue = green * random.uniform(0.4, 1.6)
@@ -81,7 +83,7 @@ def path_before_hand(random: Random) -> WaterPath:
 
 
 def path_before_scene(random: Random) -> WaterPath:
-    """Water for a whole picture whose values were made linear with `SCENE_GAMMA`."""
+    """Water before a whole picture whose values were made linear with `SCENE_GAMMA`."""
     attenuation = np.array([random.uniform(0.05, 0.6), random.uniform(0.03, 0.4), random.uniform(0.5, 2.2)])
     absorbed = np.exp(-attenuation * random.uniform(0.3, 1.6))
     veil = np.array([random.uniform(0.3, 0.9), random.uniform(0.35, 0.9), random.uniform(0.02, 0.3)])
@@ -108,10 +110,6 @@ def _exposed(picture: Float, settings: LightSettings, random: Random) -> Float:
     rows, columns = picture.shape[:2]
     light = 1 + slope[0] * np.linspace(-1, 1, rows)[:, None] + slope[1] * np.linspace(-1, 1, columns)
     return np.asarray(np.clip(picture * light[..., None].astype(np.float32), 0.0, 1.0), np.float32)
-
-
-SCENE_GAMMA: Final = 1.6
-"""Between that of a picture and that of light: a veil that looks even."""
 
 
 def attenuate(image: Float, rng: Random) -> Float:

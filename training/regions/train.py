@@ -47,9 +47,9 @@ class RegionTraining:
     """How long the nets of the selector are trained."""
 
     locator_steps: int = 10000
-    """Of the optimiser, 1 or more; 10,000 take the locator about as far as it comes."""
+    """Steps of the optimiser, 1 or more."""
     refiner_steps: int = 8000
-    """Likewise of the refiner."""
+    """Likewise."""
 
 
 def train_regions(

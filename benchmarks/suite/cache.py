@@ -27,9 +27,8 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.fsm import load_grammar
 from lightgesture.results.atomic import replacing_folder
 from lightgesture.results.writers import to_json_line
-from lightgesture.synth.output import video_writer
+from lightgesture.synth.output import video_writer, with_truth
 from lightgesture.synth.scene import SceneFrame
-from lightgesture.synth.truth import with_truth
 from lightgesture.training.datasets import Label
 
 VIDEO, TRUTH = "clip.mp4", "truth.jsonl"

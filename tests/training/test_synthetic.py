@@ -1,20 +1,27 @@
 """Rendered hands as training samples: all tokens, never originals, the same for the same seed."""
 
 import numpy as np
+import pytest
 
 from lightgesture.cli import main
-from lightgesture.synth.crops import CropSettings
+from lightgesture.synth import crops
 from lightgesture.training.pictures.augment import AugmentSettings
-from lightgesture.training.pool.synthetic import SyntheticSettings, synthetic_hands
+from lightgesture.training.pool import synthetic
+from lightgesture.training.pool.synthetic import synthetic_hands
+
+
+@pytest.fixture(autouse=True)
+def _few_backdrops(monkeypatch):
+    monkeypatch.setattr(crops, "BACKDROPS", 1)
 
 
 def _samples(seed, count=12):
-    settings = SyntheticSettings(crops=CropSettings(backdrops=1), sources=5)
-    return list(synthetic_hands(count, seed, settings, AugmentSettings()))
+    return list(synthetic_hands(count, seed, AugmentSettings()))
 
 
-def test_rendered_hands_hold_all_tokens_and_are_never_originals():
-    samples = _samples(3, 40)
+def test_rendered_hands_hold_all_tokens_and_are_never_originals(monkeypatch):
+    monkeypatch.setattr(synthetic, "SOURCES", 5)
+    samples = _samples(3, 22)
     assert {sample.token for sample in samples} >= {"0", "5", "left", "right", "pic", "ok"}
     assert not any(sample.original for sample in samples)
     assert len({sample.source for sample in samples}) == 5
@@ -28,10 +35,7 @@ def test_rendered_hands_hold_all_tokens_and_are_never_originals():
 
 
 def test_rendered_hands_alone_are_the_originals():
-    settings = SyntheticSettings(crops=CropSettings(backdrops=1))
-    assert all(
-        sample.original for sample in synthetic_hands(3, 1, settings, AugmentSettings(), original=True)
-    )
+    assert all(sample.original for sample in synthetic_hands(3, 1, AugmentSettings(), original=True))
 
 
 def test_nothing_to_train_on_is_refused_in_one_line(capsys):

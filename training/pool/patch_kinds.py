@@ -10,12 +10,12 @@ from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Image
 from lightgesture.models import NONE, TrainingSample
-from lightgesture.training.pictures.augment import MILD, MIRRORED_TOKENS, AugmentSettings, augment
-from lightgesture.training.pictures.hidden_hands import HidingSettings, hide
+from lightgesture.training.pictures.augment import CANVAS, MILD, MIRRORED_TOKENS, AugmentSettings, augment
+from lightgesture.training.pictures.hidden_hands import hide
 from lightgesture.training.pictures.light import relight
 from lightgesture.training.pool.negatives import NegativeSettings, Scene, missed_hand, negatives
 from lightgesture.training.pool.samples import LabelledHand
-from lightgesture.training.pool.synthetic import SyntheticSettings, synthetic_hands
+from lightgesture.training.pool.synthetic import synthetic_hands
 
 Random = np.random.Generator
 
@@ -28,8 +28,8 @@ class PoolSettings:
     `copies`, 0 to 1. rounds: how often regions that are no hand are drawn from each picture. hidden: share of the
     rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
     patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
-    contour: numbers of the outline, which go with each patch. rendered, synthetic: number of rendered hands, and how
-    they vary. augment, mild, negative, hiding: how copies, mild copies, regions and hidden hands are made.
+    contour: numbers of the outline, which go with each patch. rendered: number of rendered hands. augment, mild,
+    negative: how copies, mild copies and regions are made.
     """
 
     copies: int = 24
@@ -40,7 +40,6 @@ class PoolSettings:
     margin: int = 2
     contour: ContourSettings = field(default_factory=ContourSettings)
     rendered: int = 12000
-    synthetic: SyntheticSettings = field(default_factory=SyntheticSettings)
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(
             rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
@@ -48,7 +47,6 @@ class PoolSettings:
     )
     mild: AugmentSettings = MILD
     negative: NegativeSettings = field(default_factory=NegativeSettings)
-    hiding: HidingSettings = field(default_factory=HidingSettings)
 
     @property
     def mild_copies(self) -> int:
@@ -113,7 +111,7 @@ def _hidden(
     for hand in originals.hands[first:last]:
         if random.random() < settings.hidden:
             image, box, _ = augment(hand, pictures, settings.augment, random)
-            image, box = hide(image, box, pictures, settings.hiding, random)
+            image, box = hide(image, box, pictures, random)
             yield TrainingSample(
                 image=image, box=box, side=hand.side, token=NONE, source=hand.source, original=False
             )
@@ -146,7 +144,7 @@ def _rendered(
 ) -> Iterator[TrainingSample]:
     seed = int(random.integers(2**31))
     tokens = {hand.token for hand in originals.hands}
-    for sample in synthetic_hands(last - first, seed, settings.synthetic, settings.augment):
+    for sample in synthetic_hands(last - first, seed, settings.augment):
         if not tokens or sample.token in tokens:
             yield sample
 
@@ -171,7 +169,7 @@ def _relit(region: TrainingSample, settings: PoolSettings, random: Random) -> Tr
     rows, columns = region.image.shape[:2]
     left, top = max(0, x - reach), max(0, y - reach)
     part = region.image[top : min(rows, y + height + reach), left : min(columns, x + width + reach)]
-    scale = min(1.0, 1.5 * settings.augment.canvas / max(part.shape[:2]))
+    scale = min(1.0, 1.5 * CANVAS / max(part.shape[:2]))
     if scale < 1.0:
         part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8)
     box = (

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.net.network import IntegerNetwork, Quantisation
-from lightgesture.features.net.nodes import Node, same_padding
+from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, same_padding
 
 Levels = NDArray[np.int8]
 Wide = NDArray[np.int64]

@@ -25,7 +25,6 @@ from lightgesture.benchmarks.finding_latency import (
 )
 from lightgesture.benchmarks.timing import LatencySettings
 from lightgesture.features.find.selector_file import load_learned
-from lightgesture.features.net.reference import NumpyRunner
 from lightgesture.features.net.runner import Network
 from lightgesture.sources import open_source
 
@@ -59,10 +58,10 @@ def test_without_the_run_time_the_nets_run_by_numpy():
     before = {name for name in sys.modules if name.startswith(LITERT)}
     network = load_learned().locator
     with without_litert():
-        assert isinstance(Network(network)._runner, NumpyRunner)
+        assert Network(network).backend == "numpy"
     assert {name for name in sys.modules if name.startswith(LITERT)} == before
     pytest.importorskip(LITERT)
-    assert not isinstance(Network(network)._runner, NumpyRunner)
+    assert Network(network).backend == "litert"
 
 
 def test_both_run_times_find_the_same(frames):

@@ -100,7 +100,7 @@ class LiteRtRunner:
         return {name: np.concatenate(levels) for name, levels in found.items()}
 
     def _plan_for(self, inputs: Mapping[str, Levels]) -> tuple[Any, list[int], list[int]]:
-        sizes: dict[str, Shape] = {name: inputs[name].shape[1:] for name in self._network.inputs}  # type: ignore[misc]
+        sizes: dict[str, Shape] = {name: inputs[name].shape[1:] for name in self._network.inputs}
         key = tuple(sizes.values())
         planned = self._planned.pop(key, None) or self._plan(sizes)
         # The last is the one used last, so that the first can go.

@@ -23,7 +23,8 @@ LARGEST_FILE: Final = 64 * 2**20
 """Bytes, packed or unpacked, beyond which an archive is not read: no file of ours comes near."""
 LARGEST_HEADER: Final = 2**18
 """Bytes of the JSON text."""
-MOST_MEMBERS: Final = 512
+MOST_MEMBERS: Final = 128
+"""Arrays of one archive; ours have up to 40."""
 MOST_AXES: Final = 4
 KINDS: Final = "iufU"
 """Kinds of dtype: whole numbers, floats, text. Objects, which would be pickles, are none of them."""
@@ -70,7 +71,7 @@ def read_archive(
         with zipfile.ZipFile(file) as archive:
             members = _members(archive)
             if HEADER not in members:
-                raise ValueError("it has no header")
+                raise ArchiveError(file, "has no header, so it is of an older version or no file of ours")
             header = _header(archive, members[HEADER])
             arrays = {
                 name: _array(archive, entry)
@@ -98,6 +99,9 @@ def _members(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
         name = entry.filename.removesuffix(WRITTEN_AS)
         if name == entry.filename or not name.isidentifier() or name in members:
             raise ValueError(f"{entry.filename[:64]!r} is no name of an array, or stands twice")
+        # Other methods may ask for memory by a number in the data.
+        if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise ValueError(f"{entry.filename} is packed by another method than deflate")
         members[name] = entry
     return members
 

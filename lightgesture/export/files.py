@@ -104,12 +104,12 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
         new.mkdir(parents=True)
         for name, content in files.items():
             (new / name).write_bytes(content)
-        if target.exists():
-            os.rename(target, old)
         try:
+            if target.exists():
+                os.rename(target, old)
             os.rename(new, target)
-        except OSError:
-            if old.exists():
+        except BaseException:  # an interruption between the two as well
+            if old.exists() and not target.exists():
                 os.rename(old, target)
             raise
     except OSError as error:

@@ -329,3 +329,23 @@ def test_what_breaks_off_leaves_the_older_export_as_it_was(tmp_path, monkeypatch
         flat.write_folder(out, {"a": b"a", "b": b"b"})
     assert (out / "manifest.json").read_bytes() == before
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize("error", [OSError(18, "Invalid cross-device link"), KeyboardInterrupt()])
+def test_a_rename_that_fails_brings_the_older_export_back(tmp_path, monkeypatch, error):
+    out = tmp_path / "out"
+    flat.write_folder(out, flat.FlatFiles().all_files())
+    before = (out / "manifest.json").read_bytes()
+    original, asked = flat.os.rename, []
+
+    def failing(source, target):
+        asked.append(target)
+        if len(asked) == 2:
+            raise error
+        original(source, target)
+
+    monkeypatch.setattr(flat.os, "rename", failing)
+    with pytest.raises((flat.UsageError, KeyboardInterrupt)):
+        flat.write_folder(out, {"a": b"a"})
+    assert (out / "manifest.json").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]

@@ -158,6 +158,12 @@ def test_a_name_that_is_a_path_is_refused(tmp_path, name):
     assert "no name of an array" in refusal(archive_of(tmp_path / "bad.npz", {name: stored(np.zeros(1))}))
 
 
+def test_another_packing_than_deflate_is_refused(tmp_path):
+    with zipfile.ZipFile(tmp_path / "bad.npz", "w", zipfile.ZIP_LZMA) as zipped:
+        zipped.writestr("header.npy", stored(text(HEADER)))
+    assert "another method" in refusal(tmp_path / "bad.npz")
+
+
 @pytest.mark.filterwarnings("ignore:Duplicate name")
 def test_a_name_that_stands_twice_is_refused(tmp_path):
     path = archive_of(tmp_path / "twice.npz", {"a.npy": stored(np.zeros(1))})

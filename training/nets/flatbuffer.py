@@ -78,7 +78,7 @@ def to_flatbuffer(network: IntegerNetwork) -> tuple[bytes, dict[str, int]]:
     """The network as a LiteRT model for one picture of each input, of the training's size, and where its arrays are.
 
     Places are bytes from the start, by "node/weights", "node/biases", "node/scales" (of the weights) and, of a node
-    that doubles a map, "node/size". Needs the package flatbuffers; raises NetworkError.
+    that doubles a map, "node/size". Needs the package flatbuffers.
     """
     return _Writer(network).model()
 

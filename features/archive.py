@@ -23,8 +23,8 @@ LARGEST_FILE: Final = 64 * 2**20
 """Bytes, packed or unpacked, beyond which an archive is not read: no file of ours comes near."""
 LARGEST_HEADER: Final = 2**18
 """Bytes of the JSON text."""
-MOST_MEMBERS: Final = 128
-"""Arrays of one archive; ours have up to 40."""
+MOST_MEMBERS: Final = 256
+"""Arrays of one archive; ours have up to 40, those of older versions 150."""
 MOST_AXES: Final = 4
 KINDS: Final = "iufU"
 """Kinds of dtype: whole numbers, floats, text. Objects, which would be pickles, are none of them."""

@@ -141,3 +141,11 @@ def test_a_net_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
     with pytest.raises(SelectorError, match=r"bad\.npz: .*lightgesture train regions") as caught:
         load_learned(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_file_of_an_older_version_is_told_so(tmp_path):
+    np.savez(tmp_path / "old.npz", version=np.int32(2), regions_value=np.zeros((1, 1), np.float32))
+    with pytest.raises(
+        SelectorError, match=r"old\.npz: has no header, so it is of an older version.*; make it again"
+    ):
+        load_classical(tmp_path / "old.npz")

@@ -30,6 +30,7 @@ COMMANDS = {
         "score the models and the whole chain on labelled pictures or rendered dives",
     ),
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
+    "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
 }
 """Name of a command to its module and its line of help.

@@ -15,7 +15,6 @@ from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import PEAK_MEMORY, Image, limited_threads
-from lightgesture.features.net.nodes import multiply_adds
 from lightgesture.features.net.runner import Network
 from lightgesture.features.types import Box
 from lightgesture.features.vector import block_lengths
@@ -23,6 +22,7 @@ from lightgesture.models.cnn import CnnClassifier
 from lightgesture.models.loading import SHIPPED
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.models.svm_file import SvmModel
+from lightgesture.training.nets.architectures import multiply_adds
 
 NOTE = (
     "multiply_adds: a hand, of the net's layers, or of the SVM's matrix products (pooling of the gradients, "

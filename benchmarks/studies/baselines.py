@@ -34,8 +34,8 @@ from lightgesture.console import say
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.vector import VectorSettings
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.models.svm_file import write_svm_model
 from lightgesture.training.datasets import find_data, read_hands
+from lightgesture.training.model_files import write_svm_model
 from lightgesture.training.pool.patch_kinds import Originals
 from lightgesture.training.svm.descent import DescentSettings
 from lightgesture.training.svm.machine import SvmSettings, train_svm

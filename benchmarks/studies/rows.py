@@ -31,8 +31,8 @@ def fit_row(
     folder: of all trainings from this pool; each has one of its own there, so that rows of several studies that are the
     same training are trained once.
     """
-    from lightgesture.features.net.nodes import multiply_adds
     from lightgesture.models.cnn import CnnClassifier
+    from lightgesture.training.nets.architectures import multiply_adds
     from lightgesture.training.nets.checkpoints import checkpoint_folder
 
     chosen = sha256(np.packbits(rows).tobytes()).hexdigest()

@@ -26,12 +26,12 @@ from lightgesture.features.find.selector_file import (
     SelectorError,
     load_classical,
     load_learned,
-    save_selector,
 )
 from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.hands import ReadingStage
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
+from lightgesture.training.model_files import write_selector
 
 
 def show_nothing(samples, _heading):
@@ -167,7 +167,7 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     file = tmp_path / "fold.npz"
     parts = load_learned()
     own = replace(parts, **{name: altered(getattr(parts, name)) for name in ("places", "pairs")})
-    save_selector(file, Selector(load_classical(), own))
+    write_selector(Selector(load_classical(), own), file)
     card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")

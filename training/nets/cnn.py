@@ -1,6 +1,5 @@
 """From a manifest to a hand net and its card: the training of the CNN from end to end."""
 
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -13,11 +12,10 @@ from numpy.typing import NDArray
 from lightgesture._version import __version__
 from lightgesture.features.outline.contours import contour_length
 from lightgesture.models import CLASSES
-from lightgesture.models.archive import write_file
 from lightgesture.models.calibration import fit_temperature, softmax
 from lightgesture.models.cnn import CnnClassifier, CnnModel
-from lightgesture.models.cnn_file import write_cnn_model
 from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
+from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.pool.kept_sources import held_out_hands, keeps_whole_sources, kept_out
@@ -97,7 +95,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     card["training"]["seconds"] = round(time.monotonic() - started)
     card["training"]["peak_memory_mib"] = peak_memory_mib()
     write_cnn_model(model, out)
-    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    write_json(card, out.with_suffix(".json"))
     return card
 
 
@@ -163,7 +161,7 @@ def make_card(
     """The card of a trained net, ready for JSON. kept: hands that were kept from it, bool (n,)."""
     import torch
 
-    from lightgesture.features.net.nodes import multiply_adds
+    from lightgesture.training.nets.architectures import multiply_adds
 
     whole = "whole sources" if keeps_whole_sources(originals.hands, kept) else "of every source some"
     return {

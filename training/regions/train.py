@@ -12,9 +12,10 @@ import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector, save_selector
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
+from lightgesture.training.model_files import write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
@@ -84,8 +85,7 @@ def train_regions(
     pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
-    with replacing(out) as temporary:
-        save_selector(temporary, Selector(classical, LearnedParts(*learned, places, pairs)))
+    write_selector(Selector(classical, LearnedParts(*learned, places, pairs)), out)
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 

@@ -1,6 +1,5 @@
 """From a manifest to a model file and its card: the training of the SVM from end to end."""
 
-import json
 import time
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -12,10 +11,10 @@ import numpy as np
 from lightgesture._version import __version__
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import CLASSES
-from lightgesture.models.archive import write_file
 from lightgesture.models.projection import Progress
-from lightgesture.models.svm_file import SvmModel, write_svm_model
+from lightgesture.models.svm_file import SvmModel
 from lightgesture.training.card import LIMITS, data_section, held_out_section, operating_points
+from lightgesture.training.model_files import write_json, write_svm_model
 from lightgesture.training.nets.checkpoints import checkpoint_folder, peak_memory_mib
 from lightgesture.training.pool.originals import read_originals
 from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
@@ -83,7 +82,7 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
     card["training"]["seconds"] = round(time.monotonic() - started)
     card["training"]["peak_memory_mib"] = peak_memory_mib()
     write_svm_model(model, out)
-    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    write_json(card, out.with_suffix(".json"))
     return card
 
 

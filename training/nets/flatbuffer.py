@@ -1,18 +1,21 @@
-"""A network as a file of LiteRT, a FlatBuffer, written table by table from its integers.
+"""A network as a `.tflite` file of LiteRT, a FlatBuffer, written table by table from its integers.
 
-LiteRT brings a module that could do it, but its 1,100 classes take four megabytes and a part of the time to the first
-record; a board pays for that at each start. The nets need five operators and seven other tables. Numbers of fields and
-codes are those of LiteRT's `schema.fbs`, which may add to them and never change them.
+LiteRT brings a module that could do it, but its 1,100 classes take four megabytes. The nets need five operators and
+seven other tables. Numbers of fields and codes are those of LiteRT's `schema.fbs`, which may add to them and never
+change them.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, Shape, infer_shapes
+from lightgesture.features.net.file import BIASES, LAYOUT, SCALES, SIZE, TFLITE, WEIGHTS
+from lightgesture.features.net.network import IntegerNetwork, LiteRtFile, Node, Quantisation, infer_shapes
 
 FILE_KIND = b"TFL3"
 MODEL_VERSION = 3
@@ -49,32 +52,56 @@ _OPERATORS = {
 }
 
 
-def to_flatbuffer(network: IntegerNetwork, sizes: Mapping[str, Shape]) -> bytes:
-    """The network as a LiteRT model for one picture of each input, of these sizes.
+def with_litert(network: IntegerNetwork) -> IntegerNetwork:
+    """The network with its `.tflite` file, so that LiteRT can run it."""
+    content, places = to_flatbuffer(network)
+    sizes = {node.name: places[f"{node.name}/{SIZE}"] for node in network.nodes if node.op == "upsample"}
+    return replace(network, litert=LiteRtFile(content, sizes))
 
-    Needs the package flatbuffers, which comes with ai-edge-litert; raises NetworkError.
+
+def network_arrays(prefix: str, network: IntegerNetwork) -> dict[str, NDArray[Any]]:
+    """All that a network holds, as the two members of an archive that `features.net.file.network_from` reads."""
+    content, places = to_flatbuffer(network)
+    layout = {
+        "inputs": {name: list(shape) for name, shape in network.inputs.items()},
+        "outputs": list(network.outputs),
+        "nodes": [asdict(node) for node in network.nodes],
+        "quantisation": {name: [item.scale, item.zero] for name, item in network.quantisation.items()},
+        "places": places,
+        "sha256": hashlib.sha256(content).hexdigest(),
+    }
+    members = {LAYOUT: json.dumps(layout).encode(), TFLITE: content}
+    return {f"{prefix}_{end}": np.frombuffer(data, np.uint8) for end, data in members.items()}
+
+
+def to_flatbuffer(network: IntegerNetwork) -> tuple[bytes, dict[str, int]]:
+    """The network as a LiteRT model for one picture of each input, of the training's size, and where its arrays are.
+
+    Places are bytes from the start, by "node/weights", "node/biases", "node/scales" (of the weights) and, of a node
+    that doubles a map, "node/size". Needs the package flatbuffers.
     """
-    return _Writer(network, sizes).model()
+    return _Writer(network).model()
 
 
 class _Writer:
     """Writes tensors, buffers and operators of one model as they come, and then the tables that list them."""
 
-    def __init__(self, network: IntegerNetwork, sizes: Mapping[str, Shape]) -> None:
+    def __init__(self, network: IntegerNetwork) -> None:
         import flatbuffers
 
         self._builder: Any = flatbuffers.Builder(1 << 16)
-        self._network, self._sizes = network, sizes
-        self._shapes = infer_shapes(sizes, network.nodes)
+        self._network = network
+        self._shapes = infer_shapes(network.inputs, network.nodes)
         self._buffers = [self._table(3)]  # the first is that of tensors without data
         self._tensors: list[int] = []
         self._operators: list[int] = []
         self._codes: dict[int, int] = {}
-        self._places: dict[str, int] = {}
+        self._number_of: dict[str, int] = {}
+        self._kept: dict[str, int] = {}
 
-    def model(self) -> bytes:
-        """The whole model."""
-        for name in self._sizes:
+    def model(self) -> tuple[bytes, dict[str, int]]:
+        """The whole model, and at which byte of it each array that is kept begins."""
+        for name in self._network.inputs:
             self._activation_tensor(name)
         for node in self._network.nodes:
             self._add_node(node)
@@ -82,8 +109,8 @@ class _Writer:
         graph = self._table(
             6,
             (0, "Offset", self._tables(self._tensors)),
-            (1, "Offset", self._numbers([self._places[name] for name in self._sizes])),
-            (2, "Offset", self._numbers([self._places[name] for name in self._network.outputs])),
+            (1, "Offset", self._numbers([self._number_of[name] for name in self._network.inputs])),
+            (2, "Offset", self._numbers([self._number_of[name] for name in self._network.outputs])),
             (3, "Offset", self._tables(self._operators)),
         )
         model = self._table(
@@ -94,7 +121,9 @@ class _Writer:
             (4, "Offset", self._tables(self._buffers)),
         )
         self._builder.Finish(model, FILE_KIND)
-        return bytes(self._builder.Output())
+        content = bytes(self._builder.Output())
+        # The builder counts from the end; a list begins with its length, four bytes.
+        return content, {name: len(content) - offset + 4 for name, offset in self._kept.items()}
 
     def _table(self, size: int, *fields: Field) -> int:
         """Place of a new table of `size` fields; those that are left out have the schema's own values."""
@@ -126,10 +155,10 @@ class _Writer:
         return self._table(4, (0, "Int8", code), (2, "Int32", OPERATOR_VERSION), (3, "Int32", code))
 
     def _activation_tensor(self, name: str) -> int:
-        self._places[name] = self._tensor(
+        self._number_of[name] = self._tensor(
             name, (1, *self._shapes[name]), INT8, None, self._network.quantisation[name]
         )
-        return self._places[name]
+        return self._number_of[name]
 
     def _tensor(
         self,
@@ -148,31 +177,35 @@ class _Writer:
         if data is not None:
             content = np.frombuffer(np.ascontiguousarray(data).tobytes(), np.uint8)
             fields.append((2, "Uint32", len(self._buffers)))
-            self._buffers.append(self._table(3, (0, "Offset", self._numbers(content, np.uint8))))
+            self._kept[name] = self._numbers(content, np.uint8)
+            self._buffers.append(self._table(3, (0, "Offset", self._kept[name])))
         if scale is not None:
-            fields.append((4, "Offset", self._quantisation(scale)))
+            fields.append((4, "Offset", self._quantisation(name, scale)))
         self._tensors.append(self._table(11, *fields))
         return len(self._tensors) - 1
 
-    def _quantisation(self, scale: Quantisation | tuple[NDArray[np.float32], int]) -> int:
+    def _quantisation(self, name: str, scale: Quantisation | tuple[NDArray[np.float32], int]) -> int:
         if isinstance(scale, Quantisation):
             scales, zeros, axis = np.array([scale.scale]), np.array([scale.zero]), 0
         else:
             scales, axis = scale
             zeros = np.zeros(len(scales))
+        offset = self._numbers(scales, np.float32)
+        if name.endswith(f"/{WEIGHTS}"):
+            self._kept[f"{name.removesuffix(WEIGHTS)}{SCALES}"] = offset
         return self._table(
             7,
-            (2, "Offset", self._numbers(scales, np.float32)),
+            (2, "Offset", offset),
             (3, "Offset", self._numbers(zeros, np.int64)),
             (6, "Int32", axis),
         )
 
     def _add_node(self, node: Node) -> None:
-        sources = [self._places[name] for name in node.inputs]
+        sources = [self._number_of[name] for name in node.inputs]
         if node.op == "upsample":
             height, width, _ = self._shapes[node.name]
             size = np.array([height, width], np.int32)
-            sources.append(self._tensor(f"{node.name}/size", (2,), INT32, size, None))
+            sources.append(self._tensor(f"{node.name}/{SIZE}", (2,), INT32, size, None))
         elif node.op != "add":
             sources += self._weight_tensors(node)
         operator = _OPERATORS[node.op]
@@ -189,11 +222,11 @@ class _Writer:
         own = self._network.weights[node.name]
         axis = 3 if node.op == "depthwise" else 0
         weights = self._tensor(
-            f"{node.name}/weights", own.weights.shape, INT8, own.weights, (own.scales, axis)
+            f"{node.name}/{WEIGHTS}", own.weights.shape, INT8, own.weights, (own.scales, axis)
         )
         entering = np.float32(self._network.quantisation[node.inputs[0]].scale)
         scales = (own.scales * entering).astype(np.float32)
-        biases = self._tensor(f"{node.name}/biases", own.biases.shape, INT32, own.biases, (scales, 0))
+        biases = self._tensor(f"{node.name}/{BIASES}", own.biases.shape, INT32, own.biases, (scales, 0))
         return [weights, biases]
 
     def _options(self, node: Node, operator: _Operator) -> int:

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from lightgesture.features.find.selector_file import load_learned
-from lightgesture.features.net.flatbuffer import to_flatbuffer
 from lightgesture.features.net.network import Quantisation
-
-PICTURE = (128, 160, 3)
+from lightgesture.training.nets.flatbuffer import network_arrays, to_flatbuffer
 
 
 @pytest.fixture(scope="module")
@@ -23,8 +21,7 @@ def network():
 
 @pytest.fixture(scope="module")
 def model(schema, network):
-    (name,) = network.inputs
-    content = to_flatbuffer(network, {name: PICTURE})
+    content, _ = to_flatbuffer(network)
     assert content[4:8] == b"TFL3"
     return schema.ModelT.InitFromObj(schema.Model.GetRootAs(content, 0))
 
@@ -42,7 +39,7 @@ def names(graph, numbers):
 def test_what_goes_in_and_out(graph, network):
     assert names(graph, graph.inputs) == list(network.inputs)
     assert names(graph, graph.outputs) == list(network.outputs)
-    assert list(graph.tensors[graph.inputs[0]].shape) == [1, *PICTURE]
+    assert list(graph.tensors[graph.inputs[0]].shape) == [1, *network.inputs["picture"]]
 
 
 def test_each_node_is_an_operator_with_its_options(schema, model, graph, network):
@@ -83,3 +80,23 @@ def test_weights_and_scales_are_those_of_the_network(schema, model, graph, netwo
     for name, quantisation in network.quantisation.items():
         (scale,), (zero,) = tensors[name].quantization.scale, tensors[name].quantization.zeroPoint
         assert Quantisation(np.float32(quantisation.scale), quantisation.zero) == Quantisation(scale, zero)
+
+
+def test_the_shipped_file_is_what_the_writer_makes_of_its_numbers(network):
+    (layout, content) = network_arrays("n", network).values()
+    assert content.tobytes() == network.litert.content
+    assert b'"sha256"' in layout.tobytes()
+
+
+def test_the_places_are_where_the_arrays_stand(network):
+    content, places = to_flatbuffer(network)
+    for name, own in network.weights.items():
+        for kind in ("weights", "biases", "scales"):
+            expected = getattr(own, kind).tobytes()
+            place = places[f"{name}/{kind}"]
+            assert content[place : place + len(expected)] == expected
+    doubled = [node.name for node in network.nodes if node.op == "upsample"]
+    assert sorted(places) == sorted(
+        [f"{name}/{kind}" for name in network.weights for kind in ("weights", "biases", "scales")]
+        + [f"{name}/size" for name in doubled]
+    )

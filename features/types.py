@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,14 +34,6 @@ class HandRegion:
     side: Side | None
     confidence: float
     alternatives: tuple[Box, ...] = ()
-
-    @property
-    def mask(self) -> NDArray[np.bool_]:
-        """bool (box height, box width), True inside the outline; drawn at each call."""
-        x, y, width, height = self.box
-        mask = np.zeros((height, width), np.uint8)
-        cv2.drawContours(mask, [self.contour.reshape(-1, 1, 2)], -1, 1, cv2.FILLED, offset=(-x, -y))
-        return mask.astype(bool)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

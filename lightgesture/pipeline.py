@@ -9,6 +9,7 @@ import numpy as np
 
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.selector import RegionStage, SelectorName, choose
+from lightgesture.features.find.settings import ALONE_CONFIDENCE
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.profile import load_profile
@@ -165,7 +166,7 @@ class Pipeline:
         candidates = self._regions.process(colour)
         settings = self._regions.settings
         chosen = choose(candidates, settings)
-        certainty = settings.alone_confidence if len(chosen) == 1 else 1.0
+        certainty = ALONE_CONFIDENCE if len(chosen) == 1 else 1.0
         sightings = [
             Sighting(
                 region.side or "right",

@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find import cells, choice, pairs
-from lightgesture.features.find.bank import Bank
-from lightgesture.features.find.bank_file import bank_arrays, bank_from
+from lightgesture.features.find import cells
+from lightgesture.features.find.bank import Bank, bank_arrays, bank_from
+from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
 from lightgesture.features.find.trees import Trees
 from lightgesture.features.net.file import network_arrays, network_from
 from lightgesture.features.net.network import IntegerNetwork, NetworkError
@@ -103,7 +103,7 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
     def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
         return ClassicalParts(
             _trees(arrays, "regions", cells.COLUMNS + BANK_NUMBERS),
-            _trees(arrays, "region_pairs", pairs.COLUMNS),
+            _trees(arrays, "region_pairs", PAIR_COLUMNS),
             bank_from(arrays, "bank"),
         )
 
@@ -117,8 +117,8 @@ def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
         return LearnedParts(
             network_from(arrays, "locator"),
             network_from(arrays, "refiner"),
-            _trees(arrays, "places", choice.COLUMNS),
-            _trees(arrays, "place_pairs", pairs.COLUMNS),
+            _trees(arrays, "places", PLACE_COLUMNS),
+            _trees(arrays, "place_pairs", PAIR_COLUMNS),
         )
 
     return _read(path, read)

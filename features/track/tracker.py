@@ -9,7 +9,7 @@ holds the state and the clock.
 
 import math
 
-from lightgesture.features.find.settings import SelectorSettings
+from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
 from lightgesture.features.geometry import box_iou
 from lightgesture.features.track import births, matching
 from lightgesture.features.track import state as track_state
@@ -38,7 +38,7 @@ class TrackStage:
         self._certainty: dict[Basis, float] = {
             CERTAIN: 1.0,
             "axis": self.settings.axis_certainty,
-            "middle": self._selection.alone_confidence,
+            "middle": ALONE_CONFIDENCE,
         }
         self._next_number = 1
         self._next_key = 1

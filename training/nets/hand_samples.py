@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.standardise import StandardSettings
+from lightgesture.features.standardise import EVENNESS, LARGEST
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
 
@@ -39,12 +39,11 @@ class HandBatch:
 
 def standardised(patches: NDArray[np.uint8]) -> Float:
     """What `features.standardise.channel_tables` makes of each patch, (n, h, w, 3), for many at once."""
-    settings = StandardSettings()
     roots = _ROOTS[patches]
     mean = roots.mean(axis=(1, 2), keepdims=True)
     variance = np.square(roots).mean(axis=(1, 2), keepdims=True) - np.square(mean)
-    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(settings.evenness))
-    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32)
+    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(EVENNESS))
+    return np.asarray(np.clip(values, -LARGEST, LARGEST), np.float32)
 
 
 class HandSamples:

@@ -7,9 +7,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.windows import Window, WindowSettings, cut_window, window_of
+from lightgesture.features.find.refiner import cut_windows, windows_round
 from lightgesture.features.geometry import pairwise_iou
-from lightgesture.features.standardise import channel_tables, luma_table
+from lightgesture.features.patch import Square
+from lightgesture.features.standardise import channel_tables, luma_tables
 from lightgesture.features.types import Image
 from lightgesture.training.pictures.photometric import PhotometricSettings, photometric
 from lightgesture.training.regions.trees import BoxedPicture
@@ -42,11 +43,10 @@ class RefinerSampling:
     turn_rad: float = 0.12
     hand_iou: float = 0.35
     none_iou: float = 0.2
-    window: WindowSettings = field(default_factory=WindowSettings)
     light: PhotometricSettings = field(default_factory=PhotometricSettings)
 
 
-def cut_turned(image: Image, window: Window, size: int, turn: float, flip: bool) -> Image:
+def cut_turned(image: Image, window: Square, turn: float, flip: bool) -> Image:
     """A window of the picture turned about the window's middle and mirrored.
 
     The board never turns a window; training does, because people lean their hands more ways than the pictures
@@ -59,17 +59,17 @@ def cut_turned(image: Image, window: Window, size: int, turn: float, flip: bool)
         matrix[:, 2] -= left, top
         turned = cv2.warpAffine(image, matrix, (side, side), borderMode=cv2.BORDER_REPLICATE)
         image, window = np.asarray(turned, np.uint8), (0, 0, side)
-    cut = cut_window(image, window, size)
+    cut = cut_windows(image, [window])[0]
     return np.ascontiguousarray(cut[:, ::-1]) if flip else cut
 
 
 def standardised(cut: Image, tables: Float) -> Float:
     """float32 (size, size, 4): colours by the tables of the picture, luma by the window's own."""
-    luma, table = luma_table(cut)
-    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma, table)]).astype(np.float32)
+    luma, table = luma_tables(cut[None])
+    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma[0], table)]).astype(np.float32)
 
 
-def target_edges(box: NDArray[np.floating], window: Window, turn: float, flip: bool) -> Float:
+def target_edges(box: NDArray[np.floating], window: Square, turn: float, flip: bool) -> Float:
     """Left, upper, right and lower edge of a hand from the window's middle in window sides, after turn and mirror."""
     left, top, side = window
     mirror = -1.0 if flip else 1.0
@@ -108,16 +108,16 @@ class RefinerSamples:
         windows, targets = [], []
         for _ in range(settings.windows):
             box = self._box(rng, hands, np.asarray(hard, np.float64), faces, image.shape[:2])
-            window = window_of(box, image, settings.window)
+            window = windows_round(box[None], image)[0]
             turn = rng.normal(0, settings.turn_rad) if rng.random() < settings.turned else 0.0
             flip = bool(rng.random() < 0.5)
-            cut = cut_turned(image, window, settings.window.size, turn, flip)
+            cut = cut_turned(image, window, turn, flip)
             windows.append(standardised(cut, tables))
             targets.append(self._target(box, hands, window, turn, flip))
         return np.stack(windows), np.stack(targets)
 
     def _target(
-        self, box: NDArray[np.float64], hands: NDArray[np.float64], window: Window, turn: float, flip: bool
+        self, box: NDArray[np.float64], hands: NDArray[np.float64], window: Square, turn: float, flip: bool
     ) -> Float:
         overlaps = pairwise_iou(box[None], hands)[0] if len(hands) else np.zeros(0)
         target = np.zeros(6, np.float32)

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.locator import Locator
-from lightgesture.features.find.peaks import PeakSettings, find_peaks
+from lightgesture.features.find.locator import Locator, find_peaks
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.standardise import channel_tables
@@ -15,7 +14,7 @@ from lightgesture.training.regions.trees import BoxedPicture
 
 Float = NDArray[np.float32]
 
-MINING = PeakSettings(most=12, least_heat=0.03)
+MOST_PEAKS, LEAST_HEAT = 12, 0.03
 """More and weaker peaks than are looked at on the board."""
 FALSE_IOU = 0.3
 """A peak whose box overlaps every hand less is false."""
@@ -31,7 +30,9 @@ def hard_regions(
     for picture in pictures:
         colour = stage.process(picture.image)
         maps = net.process(colour.picture, channel_tables(colour.picture))
-        boxes = find_peaks(maps, MINING).boxes * np.tile(np.array(colour.scale, np.float32), 2)
+        boxes = find_peaks(maps, MOST_PEAKS, LEAST_HEAT).boxes * np.tile(
+            np.array(colour.scale, np.float32), 2
+        )
         if picture.boxes and len(boxes):
             overlap = pairwise_iou(boxes, np.array(picture.boxes, np.float64)).max(axis=1)
             boxes = boxes[overlap < FALSE_IOU]

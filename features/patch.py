@@ -71,7 +71,7 @@ def cut_patches(
         # Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
         # is sampled at twice the size first: averaging all its pixels takes three to four times as long, for nothing.
         if len(square) > 2 * size:
-            square = cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR)
+            square = cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
         method = cv2.INTER_AREA if len(square) >= size else cv2.INTER_LINEAR
         cv2.resize(square, (size, size), patch, interpolation=method)
         if side == "right":

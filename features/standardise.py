@@ -28,9 +28,11 @@ _SINGLE_ROOTS = _ROOTS.astype(np.float32)
 
 def channel_tables(picture: Image) -> Float:
     """float32 (1, 256, 3): the standardised value of each value of blue, green and red of this picture."""
-    counts = [cv2.calcHist([picture], [channel], None, [256], [0, 256]).ravel() for channel in range(3)]
-    shares = np.array(counts) / (picture.shape[0] * picture.shape[1])
-    return np.ascontiguousarray(_tables(shares).T)[None]
+    counts = np.empty((3, 256), np.float32)
+    for channel, count in enumerate(counts):
+        count[:] = cv2.calcHist([picture], [channel], None, [256], [0, 256]).ravel()
+    tables = _tables(counts / (picture.shape[0] * picture.shape[1]))
+    return np.ascontiguousarray(tables.T)[None]
 
 
 def luma_tables(pictures: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], Float]:

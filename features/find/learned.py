@@ -14,7 +14,7 @@ from lightgesture.features.find.candidates import (
     describe_places,
     score_pairs,
 )
-from lightgesture.features.find.locator import Locator, Peaks, find_peaks, logistic
+from lightgesture.features.find.locator import Locator, Peaks, find_peaks
 from lightgesture.features.find.refiner import Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
 from lightgesture.features.find.trees import evaluate
@@ -36,17 +36,13 @@ class Places:
     """Both nets over a frame: places that may be hands, before anything is decided."""
 
     def __init__(self, locator: IntegerNetwork, refiner: IntegerNetwork) -> None:
-        self._locator, self._refiner = Locator(locator), Refiner(refiner)
+        self._locator, self.refiner = Locator(locator), Refiner(refiner)
 
     def find(self, colour: ColourMap) -> tuple[Peaks, Refined]:
         """Peaks of the locator and what the refiner says of each."""
         tables = channel_tables(colour.picture)
         peaks = find_peaks(self._locator.process(colour.picture, tables))
-        return peaks, self._refiner.process(colour, peaks.boxes, tables)
-
-    def look_at(self, colour: ColourMap, boxes: Float) -> Refined:
-        """What the refiner says of boxes in working pixels, without a search."""
-        return self._refiner.process(colour, boxes, channel_tables(colour.picture))
+        return peaks, self.refiner.process(colour, peaks.boxes, tables)
 
 
 class LearnedSelector:
@@ -75,9 +71,11 @@ class LearnedSelector:
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
         of a pair is the lower one.
         """
-        scale = np.tile(np.array(colour.scale, np.float32), 2)
-        refined = self._nets.look_at(colour, np.array(boxes, np.float32).reshape(-1, 4) / scale)
-        scores = np.float32(HAND_IOU) * logistic(refined.hand)
+        predicted = np.array(boxes, np.float32).reshape(-1, 4) / np.tile(
+            np.array(colour.scale, np.float32), 2
+        )
+        refined = self._nets.refiner.process(colour, predicted, channel_tables(colour.picture))
+        scores = np.float32(HAND_IOU) * (1.0 / (1.0 + np.exp(-refined.hand)))
         overlap = pairwise_iou(refined.boxes, refined.boxes)
         kept = best_distinct(overlap, scores)
         apart = overlap[np.ix_(kept, kept)] <= APART_IOU

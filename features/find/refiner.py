@@ -68,8 +68,13 @@ class Refiner:
         for window, luma, levels in zip(seen, lumas, self._network.table(INPUT, luma_values), strict=True):
             window[..., 3] = cv2.LUT(luma, levels)
         outputs = self._network.run({INPUT: seen})
-        edges, hand = outputs[BOX].reshape(len(boxes), 4), outputs[HAND].reshape(len(boxes))
-        return Refined(boxes_of(edges, windows) / scale, hand)
+        edges = outputs[BOX].reshape(len(boxes), 4)
+        places = np.array(windows, np.float32)
+        sides = places[:, 2:]
+        centres = places[:, :2] + sides / 2
+        low, high = centres + edges[:, :2] * sides, centres + edges[:, 2:] * sides
+        found = np.hstack([low, np.maximum(high - low, LEAST_SIDE)]) / scale
+        return Refined(np.asarray(found, np.float32), outputs[HAND].reshape(len(boxes)))
 
 
 def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:
@@ -77,20 +82,11 @@ def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:
     return squares_round(boxes, CONTEXT, LEAST_WINDOW * SIZE, LARGEST_WINDOW * max(picture.shape[:2]))
 
 
-def cut_windows(picture: Image, windows: Sequence[Square]) -> NDArray[np.uint8]:
-    """uint8 (n, SIZE, SIZE, 3): windows of a picture; what lies outside it continues its edge."""
-    seen = np.empty((len(windows), SIZE, SIZE, 3), np.uint8)
+def cut_windows(picture: Image, windows: Sequence[Square], size: int = SIZE) -> NDArray[np.uint8]:
+    """uint8 (n, size, size, 3): windows of a picture; what lies outside it continues its edge."""
+    seen = np.empty((len(windows), size, size, 3), np.uint8)
     for place, cut in zip(seen, cut_squares(picture, windows), strict=True):
         # Interpolation alone would alias where the window shrinks.
-        how = cv2.INTER_AREA if len(cut) > SIZE else cv2.INTER_LINEAR
-        cv2.resize(cut, (SIZE, SIZE), place, interpolation=how)
+        how = cv2.INTER_AREA if len(cut) > size else cv2.INTER_LINEAR
+        cv2.resize(cut, (size, size), place, interpolation=how)
     return seen
-
-
-def boxes_of(edges: Float, windows: Sequence[Square]) -> Float:
-    """The refiner's boxes, float32 (n, 4), in the pixels of the windows that it saw."""
-    places = np.array(windows, np.float32)
-    sides = places[:, 2:]
-    centres = places[:, :2] + sides / 2
-    low, high = centres + edges[:, :2] * sides, centres + edges[:, 2:] * sides
-    return np.concatenate([low, np.maximum(high - low, LEAST_SIDE)], axis=1).astype(np.float32)

@@ -167,7 +167,9 @@ def defect_depths(contour: Contour) -> NDArray[np.float64]:
     if len(hull) < 3:
         return np.zeros(0)
     defects = cv2.convexityDefects(curve, hull.reshape(-1, 1))
-    return np.zeros(0) if defects is None else np.asarray(defects).reshape(-1, 4)[:, 3] / DEPTH_UNIT
+    return (
+        np.zeros(0) if defects is None else np.asarray(defects, np.float64).reshape(-1, 4)[:, 3] / DEPTH_UNIT
+    )
 
 
 def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.refiner import cut_windows, windows_round
+from lightgesture.features.find.refiner import SIZE, cut_windows, windows_round
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.patch import Square
 from lightgesture.features.standardise import channel_tables, luma_tables
@@ -46,7 +46,7 @@ class RefinerSampling:
     light: PhotometricSettings = field(default_factory=PhotometricSettings)
 
 
-def cut_turned(image: Image, window: Square, turn: float, flip: bool) -> Image:
+def cut_turned(image: Image, window: Square, size: int, turn: float, flip: bool) -> Image:
     """A window of the picture turned about the window's middle and mirrored.
 
     The board never turns a window; training does, because people lean their hands more ways than the pictures
@@ -59,7 +59,7 @@ def cut_turned(image: Image, window: Square, turn: float, flip: bool) -> Image:
         matrix[:, 2] -= left, top
         turned = cv2.warpAffine(image, matrix, (side, side), borderMode=cv2.BORDER_REPLICATE)
         image, window = np.asarray(turned, np.uint8), (0, 0, side)
-    cut = cut_windows(image, [window])[0]
+    cut = cut_windows(image, [window], size)[0]
     return np.ascontiguousarray(cut[:, ::-1]) if flip else cut
 
 
@@ -111,7 +111,7 @@ class RefinerSamples:
             window = windows_round(box[None], image)[0]
             turn = rng.normal(0, settings.turn_rad) if rng.random() < settings.turned else 0.0
             flip = bool(rng.random() < 0.5)
-            cut = cut_turned(image, window, turn, flip)
+            cut = cut_turned(image, window, SIZE, turn, flip)
             windows.append(standardised(cut, tables))
             targets.append(self._target(box, hands, window, turn, flip))
         return np.stack(windows), np.stack(targets)

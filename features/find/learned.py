@@ -71,11 +71,10 @@ class LearnedSelector:
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
         of a pair is the lower one.
         """
-        predicted = np.array(boxes, np.float32).reshape(-1, 4) / np.tile(
-            np.array(colour.scale, np.float32), 2
-        )
+        scale = np.tile(np.array(colour.scale, np.float32), 2)
+        predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
         refined = self._nets.refiner.process(colour, predicted, channel_tables(colour.picture))
-        scores = np.float32(HAND_IOU) * (1.0 / (1.0 + np.exp(-refined.hand)))
+        scores = np.asarray(np.float32(HAND_IOU) * (1.0 / (1.0 + np.exp(-refined.hand))), np.float32)
         overlap = pairwise_iou(refined.boxes, refined.boxes)
         kept = best_distinct(overlap, scores)
         apart = overlap[np.ix_(kept, kept)] <= APART_IOU

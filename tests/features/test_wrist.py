@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightgesture.features.find.proposals import (
-    ARM_TOP,
     LEAST_HEIGHT,
     WRIST_DISTANCE,
     arm_direction,
@@ -88,11 +87,8 @@ def test_filled_rectangles_of_any_size_are_handled(size):
 
 
 def test_rests_that_balance_about_the_palm_are_no_arm():
-    # Below the palm's middle, but so that both rests together have their centre in it.
-    mask = np.zeros((61, 81), np.uint8)
-    cv2.circle(mask, (40, 20), 10, 255, cv2.FILLED)
-    top = 20 + round(ARM_TOP * 10)
-    mask[top : top + 6, 5:21] = mask[top : top + 6, 60:76] = 255
-    direction = arm_direction(mask, (40, 20), 10.0)
-    assert direction is not None
-    np.testing.assert_allclose(direction, (0, 1), atol=1e-6)
+    mask = np.zeros((41, 61), np.uint8)
+    mask[20, 10:51] = 255
+    assert arm_direction(mask, (30, 20), 1.0) is None
+    mask[20, 51:55] = 255
+    np.testing.assert_allclose(arm_direction(mask, (30, 20), 1.0), (1, 0))

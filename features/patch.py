@@ -115,7 +115,7 @@ def cut_squares(picture: Image, squares: Sequence[Square]) -> list[Image]:
         cut = picture[y0:y1, x0:x1]
         margins = y0 - top, top + side - y1, x0 - left, left + side - x1
         if any(margins):
-            # A square beyond the picture has its nearest pixels inside, which leaves it less to continue.
+            # Of a square wholly beside the picture a margin is negative.
             above, below, before, after = np.maximum(margins, 0).tolist()
             cut = cv2.copyMakeBorder(cut, above, below, before, after, cv2.BORDER_REPLICATE)  # type: ignore[assignment]
         cuts.append(cut)

@@ -31,8 +31,9 @@ ROUNDS: Final = 30
 SMALLEST_SPREAD: Final = 1e-6
 """Pixels; outlines spread less than this round their centre are points and are not enlarged to size 1."""
 MOST_CENTRES: Final = 4096
+"""Of what a file may hold."""
 LONGEST_DESCRIPTOR: Final = 256
-"""Limits of what a file may hold."""
+"""Numbers of one descriptor that a file may hold."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -85,8 +85,8 @@ def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:
 def cut_windows(picture: Image, windows: Sequence[Square], size: int = SIZE) -> NDArray[np.uint8]:
     """uint8 (n, size, size, 3): windows of a picture; what lies outside it continues its edge."""
     seen = np.empty((len(windows), size, size, 3), np.uint8)
-    for place, cut in zip(seen, cut_squares(picture, windows), strict=True):
+    for place, cut, (_, _, side) in zip(seen, cut_squares(picture, windows), windows, strict=True):
         # Interpolation alone would alias where the window shrinks.
-        how = cv2.INTER_AREA if len(cut) > size else cv2.INTER_LINEAR
+        how = cv2.INTER_AREA if side > size else cv2.INTER_LINEAR
         cv2.resize(cut, (size, size), place, interpolation=how)
     return seen

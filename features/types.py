@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,14 +41,6 @@ class HandRegion:
     def number(self) -> None:
         """A region on its own is of no track."""
         return None
-
-    @property
-    def mask(self) -> NDArray[np.bool_]:
-        """bool (box height, box width), True inside the outline; drawn at each call."""
-        x, y, width, height = self.box
-        mask = np.zeros((height, width), np.uint8)
-        cv2.drawContours(mask, [self.contour.reshape(-1, 1, 2)], -1, 1, cv2.FILLED, offset=(-x, -y))
-        return mask.astype(bool)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,6 +7,7 @@ from typing import Final, Literal
 from lightgesture.errors import InputError
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.image import as_bgr8
 from lightgesture.features.profile import ColourProfile, Kind
 from lightgesture.features.profile_learning import learn_profile, proposed_share
 from lightgesture.features.types import Box, Image
@@ -165,7 +166,7 @@ def _look(source: Source, seconds: float) -> tuple[list[ColourMap], str | None]:
     try:
         for frame in _first_seconds(source, seconds):
             if count % stride == 0:
-                kept.append(stage.process(frame.image))
+                kept.append(stage.process(as_bgr8(frame.image)))
             if len(kept) == 2 * PICTURES:
                 del kept[1::2]
                 stride *= 2

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.archive import HEADER
 from lightgesture.features.find import selector_file
-from lightgesture.features.find.bank_file import bank_arrays
+from lightgesture.features.find.bank import bank_arrays
 from lightgesture.features.find.selector_file import Selector
 from lightgesture.features.find.trees import Trees
 from lightgesture.models import cnn_file, svm_file

@@ -16,11 +16,11 @@ from lightgesture.benchmarks.methods import Decoded, Image, Method
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.bank import bank_distances, hand_proximity
-from lightgesture.features.find.classical import describe_regions, scored_candidates
-from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, region
-from lightgesture.features.find.pairs import score_pairs
-from lightgesture.features.find.peaks import logistic
-from lightgesture.features.find.proposals import Proposals, ProposalSettings, propose
+from lightgesture.features.find.candidates import APART_IOU, best_distinct, score_pairs
+from lightgesture.features.find.classical import describe_regions, other_extents, scored_candidates
+from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
+from lightgesture.features.find.locator import logistic
+from lightgesture.features.find.proposals import LEVELS, Proposals, propose
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.find.selector_file import (
     ClassicalParts,
@@ -30,7 +30,7 @@ from lightgesture.features.find.selector_file import (
 )
 from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
-from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
+from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.skin_map import redness, stretch
 from lightgesture.features.types import Box, Candidates, HandRegion
 
@@ -39,8 +39,7 @@ Search = Callable[[ColourMap], Candidates]
 Score = Callable[[ColourMap, Proposals], Float]
 """Scores of the regions of a frame, float32 (n,), 0 to 1."""
 
-MANY_THRESHOLDS = ProposalSettings()
-ONE_THRESHOLD = ProposalSettings(levels=2)
+ONE_THRESHOLD = 2
 """Two levels are one threshold, in the middle of the range."""
 
 
@@ -72,7 +71,7 @@ class ChangedStage(RegionStage):
         return found if found is None or self._change is None else self._change(found)
 
 
-def lower_of_both(regions: Sequence[HandRegion], settings: SelectorSettings, least: float = 0.0) -> Float:
+def lower_of_both(regions: Sequence[HandRegion], least: float = 0.0) -> Float:
     """float32 (n, n): each two hands go together as well as the worse of them is one, and not at all where they overlap
     or one scores less than `least`."""
     if not regions:
@@ -80,7 +79,7 @@ def lower_of_both(regions: Sequence[HandRegion], settings: SelectorSettings, lea
     boxes = np.array([one.box for one in regions])
     scores = np.array([one.confidence for one in regions], np.float32)
     together = np.minimum.outer(scores, scores)
-    apart = pairwise_iou(boxes, boxes) <= settings.apart_iou
+    apart = pairwise_iou(boxes, boxes) <= APART_IOU
     return np.where(apart & (together >= least), together, 0.0).astype(np.float32)
 
 
@@ -88,58 +87,41 @@ def without_pairs(settings: SelectorSettings) -> Callable[[Candidates], Candidat
     """Believes each hand on its own: nothing is gained by a partner."""
 
     def change(found: Candidates) -> Candidates:
-        return replace(found, pairs=lower_of_both(found.regions, settings, settings.single_score))
+        return replace(found, pairs=lower_of_both(found.regions, settings.single_score))
 
     return change
 
 
 @dataclass(frozen=True, slots=True)
 class ClassicalSearch:
-    """The classical choice with other regions or scores. has_trees: whether trees choose the pair."""
+    """The classical choice with other scores. levels: of its regions. has_trees: whether trees choose the pair."""
 
     parts: ClassicalParts
     score: Score
-    regions: ProposalSettings = MANY_THRESHOLDS
+    levels: int = LEVELS
     has_trees: bool = True
-    settings: SelectorSettings = CLASSICAL
 
     def __call__(self, colour: ColourMap) -> Candidates:
-        proposals = propose(colour, self.regions)
+        proposals = propose(colour, self.levels)
         if not len(proposals):
             return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
         scores = self.score(colour, proposals)
-        kept, items = scored_candidates(colour, proposals, scores, self.settings)
+        kept, items = scored_candidates(colour, proposals, scores)
         found = tuple(
-            HandRegion(
-                _source_box(colour, proposals, index),
-                NO_OUTLINE,
-                None,
-                float(np.clip(scores[index], 0.0, 1.0)),
-                tuple(_source_box(colour, proposals, other) for other in others),
-            )
-            for index, others in zip(kept, self._others(proposals, scores, kept), strict=True)
+            _region(colour, proposals.boxes[[index, *others]], float(scores[index]))
+            for index, others in zip(kept, other_extents(proposals, scores, kept), strict=True)
         )
         height, width = colour.picture.shape[:2]
+        pairs = lower_of_both(found)
         if self.has_trees:
-            pairs = score_pairs(self.parts.pairs, items, (width, height), None, self.settings.apart_iou)
-        else:
-            pairs = lower_of_both(found, self.settings)
+            pairs = score_pairs(self.parts.pairs, items, (width, height), None)
         return Candidates(found, pairs, colour.source_size)
 
-    def _others(self, proposals: Proposals, scores: Float, kept: Sequence[int]) -> list[list[int]]:
-        """Other extents of each kept region, best first: a region belongs to the kept one that it overlaps most."""
-        if not kept:
-            return []
-        overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
-        owner = np.where(overlap.max(axis=1) >= self.settings.alternative_iou, overlap.argmax(axis=1), -1)
-        owner[kept] = -1
-        order = np.argsort(-scores, kind="stable")
-        most = self.settings.alternatives
-        return [[int(i) for i in order if owner[i] == place][:most] for place in range(len(kept))]
 
-
-def _source_box(colour: ColourMap, proposals: Proposals, index: int) -> Box:
-    return scale_box([int(value) for value in proposals.boxes[index]], colour.scale, colour.source_size)
+def _region(colour: ColourMap, boxes: NDArray[np.int32], score: float) -> HandRegion:
+    """A region of some extents, (n, 4), working pixels, the likeliest first."""
+    first, *others = scale_boxes(boxes, colour.scale, colour.source_size)
+    return HandRegion(first, NO_OUTLINE, None, float(np.clip(score, 0.0, 1.0)), tuple(others))
 
 
 def tree_scores(parts: ClassicalParts) -> Score:
@@ -161,13 +143,12 @@ class PlainColourStage(ColourStage):
     """The skin map of the picture's own colours: no red is given back, and the channels are not balanced."""
 
     def process(self, image: Image) -> ColourMap:
-        return replace(super().process(image), skin_of=self._plain)
+        return replace(super().process(image), skin_of=_plain_skin)
 
-    def _plain(self, picture: Image) -> Image:
-        skin = self.settings.skin
-        opponent = redness(picture.astype(np.float32) / np.float32(255), skin.exponent, skin.yellow_weight)
-        smooth = np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32)
-        return stretch(smooth, skin.low_percentile, skin.high_percentile)
+
+def _plain_skin(picture: Image) -> Image:
+    opponent = redness(picture.astype(np.float32) / np.float32(255))
+    return stretch(np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32))
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,16 +157,15 @@ class LearnedSearch:
 
     nets: Places
     refines: bool
-    settings: SelectorSettings = LEARNED
 
     def __call__(self, colour: ColourMap) -> Candidates:
         peaks, refined = self.nets.find(colour)
         boxes, scores = peaks.boxes, peaks.heat
         if self.refines:
             boxes, scores = refined.boxes, np.float32(HAND_IOU) * logistic(refined.hand)
-        kept = best_distinct(boxes, scores, self.settings)
-        found = tuple(region(colour, boxes[index], float(scores[index])) for index in kept)
-        return Candidates(found, lower_of_both(found, self.settings), colour.source_size)
+        kept = best_distinct(pairwise_iou(boxes, boxes), scores)
+        found = regions_at(colour, boxes[kept], scores[kept])
+        return Candidates(found, lower_of_both(found), colour.source_size)
 
 
 @dataclass(frozen=True, slots=True)

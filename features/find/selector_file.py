@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.archive import ArchiveError, check_format, read_archive
-from lightgesture.features.find import cells, choice, pairs
-from lightgesture.features.find.bank import Bank
-from lightgesture.features.find.bank_file import bank_from
+from lightgesture.features.find import cells
+from lightgesture.features.find.bank import Bank, bank_from
+from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
 from lightgesture.features.find.trees import Trees
 from lightgesture.features.net.file import network_from
 from lightgesture.features.net.network import IntegerNetwork
@@ -75,7 +75,7 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
     def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
         return ClassicalParts(
             trees_from(arrays, "regions", cells.COLUMNS + BANK_NUMBERS),
-            trees_from(arrays, "region_pairs", pairs.COLUMNS),
+            trees_from(arrays, "region_pairs", PAIR_COLUMNS),
             bank_from(arrays, "bank"),
         )
 
@@ -89,8 +89,8 @@ def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
         return LearnedParts(
             network_from(arrays, "locator"),
             network_from(arrays, "refiner"),
-            trees_from(arrays, "places", choice.COLUMNS),
-            trees_from(arrays, "place_pairs", pairs.COLUMNS),
+            trees_from(arrays, "places", PLACE_COLUMNS),
+            trees_from(arrays, "place_pairs", PAIR_COLUMNS),
         )
 
     return _read(path, LEARNED_PARTS, read)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Final
 
-from lightgesture.features.find.settings import SelectorSettings
+from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
 from lightgesture.features.geometry import box_iou
 from lightgesture.features.track import births
 from lightgesture.features.track.births import PairEvidence, PairKey
@@ -221,9 +221,7 @@ class Tracker:
             if single is not None:
                 self._keep((single,))
         axis, width = candidates.axis, candidates.source_size[0]
-        self._hands = [
-            with_lone_side(track, axis, width, selection.alone_confidence) for track in self._hands
-        ]
+        self._hands = [with_lone_side(track, axis, width, ALONE_CONFIDENCE) for track in self._hands]
 
     def _keep(self, believed: tuple[Track, ...]) -> None:
         """Follow these, and of the others only what is under observation."""

@@ -13,7 +13,8 @@ from lightgesture.export.files import FlatFiles, check_folder, write_folder
 from lightgesture.export.language import export_language
 from lightgesture.export.learned import cnn_constants, export_bank, export_svm, export_trees
 from lightgesture.export.nets import export_net
-from lightgesture.features.find import cells, choice, pairs
+from lightgesture.features.find import cells
+from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
 from lightgesture.features.find.selector import find_hands
 from lightgesture.features.find.selector_file import BANK_NUMBERS, SelectorError, load_classical, load_learned
 from lightgesture.features.patch import PatchSettings, cut_patches
@@ -71,10 +72,10 @@ def _export_selector(files: FlatFiles) -> None:
     export_trees(
         files,
         {
-            "places": (learned.places, choice.COLUMNS),
-            "place_pairs": (learned.pairs, pairs.COLUMNS),
+            "places": (learned.places, PLACE_COLUMNS),
+            "place_pairs": (learned.pairs, PAIR_COLUMNS),
             "regions": (classical.regions, cells.COLUMNS + BANK_NUMBERS),
-            "region_pairs": (classical.pairs, pairs.COLUMNS),
+            "region_pairs": (classical.pairs, PAIR_COLUMNS),
         },
     )
     export_bank(files, classical.bank)

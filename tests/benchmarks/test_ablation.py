@@ -89,10 +89,10 @@ def test_one_threshold_proposes_less(colour):
 
 
 def test_two_hands_go_together_as_well_as_the_worse(parts):
-    together = lower_of_both(HANDS, CLASSICAL)
+    together = lower_of_both(HANDS)
     assert together == pytest.approx(np.array([[0, 0.4, 0], [0.4, 0, 0.4], [0, 0.4, 0]], np.float32))
-    assert not lower_of_both(HANDS, CLASSICAL, least=0.5).any()
-    assert lower_of_both((), CLASSICAL).shape == (0, 0)
+    assert not lower_of_both(HANDS, least=0.5).any()
+    assert lower_of_both(()).shape == (0, 0)
 
 
 def test_without_pairs_a_partner_helps_nobody():

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.standardise import StandardSettings
+from lightgesture.features.standardise import EVENNESS, LARGEST
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
 
@@ -20,7 +20,7 @@ _ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))
 
 ERASED_SHARE: Final = 0.2
 """Of patches, those of which a part is covered."""
-LARGEST: Final = 0.4
+LARGEST_ERASED: Final = 0.4
 """Side of that part over the patch's."""
 
 
@@ -37,12 +37,11 @@ class HandBatch:
 
 def standardised(patches: NDArray[np.uint8]) -> Float:
     """What `features.standardise.channel_tables` makes of each patch, (n, h, w, 3), for many at once."""
-    settings = StandardSettings()
     roots = _ROOTS[patches]
     mean = roots.mean(axis=(1, 2), keepdims=True)
     variance = np.square(roots).mean(axis=(1, 2), keepdims=True) - np.square(mean)
-    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(settings.evenness))
-    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32)
+    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(EVENNESS))
+    return np.asarray(np.clip(values, -LARGEST, LARGEST), np.float32)
 
 
 class HandSamples:
@@ -110,6 +109,6 @@ class HandSamples:
     def _erase(self, seen: Float, random: Random) -> None:
         size = seen.shape[1]
         for number in np.flatnonzero(random.random(len(seen)) < ERASED_SHARE):
-            height, width = random.integers(2, max(3, round(LARGEST * size)), 2)
+            height, width = random.integers(2, max(3, round(LARGEST_ERASED * size)), 2)
             top, left = random.integers(size - height + 1), random.integers(size - width + 1)
             seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.peaks import STRIDE
+from lightgesture.features.find.locator import STRIDE
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Box, Image
 from lightgesture.training.pictures.light import photometric

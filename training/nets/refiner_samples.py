@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.locator import Locator
-from lightgesture.features.find.peaks import PeakSettings, find_peaks
-from lightgesture.features.find.windows import Window, WindowSettings, cut_window, window_of
+from lightgesture.features.find.locator import Locator, find_peaks
+from lightgesture.features.find.refiner import SIZE, cut_windows, windows_round
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.standardise import channel_tables, luma_table
+from lightgesture.features.patch import Square
+from lightgesture.features.standardise import channel_tables, luma_tables
 from lightgesture.features.types import Image
 from lightgesture.training.pictures.light import photometric
 from lightgesture.training.regions.trees import BoxedPicture
@@ -40,9 +40,9 @@ TURN_RAD: Final = 0.12
 HAND_IOU: Final = 0.35
 NONE_IOU: Final = 0.2
 """Overlap from which a window is one of a hand, and below which it is none; between, it does not count."""
-WINDOW: Final = WindowSettings()
 
-MINING: Final = PeakSettings(most=12, least_heat=0.03)
+MOST_PEAKS: Final = 12
+LEAST_HEAT: Final = 0.03
 """More and weaker peaks than are looked at on the board."""
 FALSE_IOU: Final = 0.3
 """A peak whose box overlaps every hand less is false."""
@@ -61,7 +61,9 @@ def hard_regions(
     for picture in pictures:
         colour = stage.process(picture.image)
         maps = net.process(colour.picture, channel_tables(colour.picture))
-        boxes = find_peaks(maps, MINING).boxes * np.tile(np.array(colour.scale, np.float32), 2)
+        boxes = find_peaks(maps, MOST_PEAKS, LEAST_HEAT).boxes * np.tile(
+            np.array(colour.scale, np.float32), 2
+        )
         if picture.boxes and len(boxes):
             overlap = pairwise_iou(boxes, np.array(picture.boxes, np.float64)).max(axis=1)
             boxes = boxes[overlap < FALSE_IOU]
@@ -69,7 +71,7 @@ def hard_regions(
     return found
 
 
-def cut_turned(image: Image, window: Window, size: int, turn: float, flip: bool) -> Image:
+def cut_turned(image: Image, window: Square, size: int, turn: float, flip: bool) -> Image:
     """A window of the picture turned about the window's middle and mirrored.
 
     The board never turns a window; training does, because people lean their hands more ways than the pictures
@@ -82,17 +84,17 @@ def cut_turned(image: Image, window: Window, size: int, turn: float, flip: bool)
         matrix[:, 2] -= left, top
         turned = cv2.warpAffine(image, matrix, (side, side), borderMode=cv2.BORDER_REPLICATE)
         image, window = np.asarray(turned, np.uint8), (0, 0, side)
-    cut = cut_window(image, window, size)
+    cut = cut_windows(image, [window], size)[0]
     return np.ascontiguousarray(cut[:, ::-1]) if flip else cut
 
 
 def standardised(cut: Image, tables: Float) -> Float:
     """float32 (size, size, 4): colours by the tables of the picture, luma by the window's own."""
-    luma, table = luma_table(cut)
-    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma, table)]).astype(np.float32)
+    luma, table = luma_tables(cut[None])
+    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma[0], table)]).astype(np.float32)
 
 
-def target_edges(box: NDArray[np.floating], window: Window, turn: float, flip: bool) -> Float:
+def target_edges(box: NDArray[np.floating], window: Square, turn: float, flip: bool) -> Float:
     """Left, upper, right and lower edge of a hand from the window's middle in window sides, after turn and mirror."""
     left, top, side = window
     mirror = -1.0 if flip else 1.0
@@ -129,16 +131,16 @@ class RefinerSamples:
         windows, targets = [], []
         for _ in range(WINDOWS):
             box = self._box(rng, hands, np.asarray(hard, np.float64), faces, image.shape[:2])
-            window = window_of(box, image, WINDOW)
+            window = windows_round(box[None], image)[0]
             turn = rng.normal(0, TURN_RAD) if rng.random() < TURNED_SHARE else 0.0
             flip = bool(rng.random() < 0.5)
-            cut = cut_turned(image, window, WINDOW.size, turn, flip)
+            cut = cut_turned(image, window, SIZE, turn, flip)
             windows.append(standardised(cut, tables))
             targets.append(self._target(box, hands, window, turn, flip))
         return np.stack(windows), np.stack(targets)
 
     def _target(
-        self, box: NDArray[np.float64], hands: NDArray[np.float64], window: Window, turn: float, flip: bool
+        self, box: NDArray[np.float64], hands: NDArray[np.float64], window: Square, turn: float, flip: bool
     ) -> Float:
         overlaps = pairwise_iou(box[None], hands)[0] if len(hands) else np.zeros(0)
         target = np.zeros(6, np.float32)

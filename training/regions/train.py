@@ -20,14 +20,20 @@ from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
-from lightgesture.training.regions.learned import fit_place_pairs, fit_places, look
 from lightgesture.training.regions.region_pictures import (
     NEGATIVE_SETS,
     Material,
     read_material,
     variants,
 )
-from lightgesture.training.regions.trees import BoxedPicture, fit_pairs, fit_regions
+from lightgesture.training.regions.trees import (
+    BoxedPicture,
+    fit_pairs,
+    fit_place_pairs,
+    fit_places,
+    fit_regions,
+    look,
+)
 
 Progress = Callable[[str], None]
 

@@ -51,7 +51,8 @@ def run_live(
         stopping = stack.enter_context(stop_signals())
         outboxes = [Outbox(sink, report) for sink in sinks]
         reader = Reader(source, mailbox, clock, report)
-        for part in (*outboxes, reader):
+        parts: list[Outbox | Reader] = [*outboxes, reader]
+        for part in parts:
             part.start()
             stack.callback(part.stop)
         loop = LiveLoop(

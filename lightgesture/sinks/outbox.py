@@ -82,11 +82,6 @@ class Outbox:
         """Whether nobody takes the records any more."""
         return self._is_gone
 
-    @property
-    def dropped(self) -> int:
-        """Records that were never sent, because the queue was full or they became too old."""
-        return self._dropped
-
     def start(self) -> None:
         """Open the sink and begin to send."""
         self._thread.start()

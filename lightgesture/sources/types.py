@@ -8,14 +8,11 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.frames import Frame
 
 Content = bytes | NDArray[np.uint8]
 """A picture as a stream brings it: a JPEG file, or uint8 (height, width, 3), BGR."""
-
-
-DEFAULT_FPS: Final = 30.0
-"""Frames a second of sources without time stamps, where the user names no other."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,8 +3,8 @@
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_pipeline
@@ -17,7 +17,7 @@ from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink, print_unbuffered
-from lightgesture.sources import LiveSource, SourceOptions, live_source
+from lightgesture.sources import SourceOptions, live_source
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -49,8 +49,12 @@ def run_live(
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
-        outboxes = [stack.enter_context(_sending(sink, report)) for sink in sinks]
-        stack.enter_context(_reading(source, mailbox, clock, report))
+        outboxes = [Outbox(sink, report) for sink in sinks]
+        reader = Reader(source, mailbox, clock, report)
+        parts: list[Outbox | Reader] = [*outboxes, reader]
+        for part in parts:
+            part.start()
+            stack.callback(part.stop)
         loop = LiveLoop(
             source.name,
             mailbox,
@@ -119,28 +123,3 @@ def _make_report() -> Report:
             say(text)
 
     return report
-
-
-@contextmanager
-def _sending(sink: Sink, report: Report) -> Iterator[Outbox]:
-    outbox = Outbox(sink, report)
-    outbox.start()
-    try:
-        yield outbox
-    finally:
-        outbox.stop()
-
-
-@contextmanager
-def _reading(
-    source: LiveSource,
-    mailbox: Mailbox,
-    clock: Callable[[], float],
-    report: Report,
-) -> Iterator[Reader]:
-    reader = Reader(source, mailbox, clock, report)
-    reader.start()
-    try:
-        yield reader
-    finally:
-        reader.stop()

@@ -11,9 +11,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from lightgesture.archive.messages import Advanced, Done, Hear, Message, Outcome
 from lightgesture.archive.runner import Runner
-from lightgesture.archive.tasks import Task
+from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Task
 from lightgesture.config.settings import DecodeSettings, change_paths
 from lightgesture.errors import UsageError
 

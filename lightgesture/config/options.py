@@ -66,7 +66,7 @@ def read_config(path: str) -> dict[str, Any]:
     UsageError: it cannot be read, is no TOML, or has a wrong key or value.
     """
     try:
-        written = read_toml(path, "configuration", "docs/batch.md")
+        written = read_toml(path, "configuration", "deploy/lightgesture.toml")
         content = {key.replace("-", "_"): value for key, value in written.items()}
         DecodeSettings.model_validate(content, strict=True)
     except TomlError as error:

@@ -5,8 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-DEFAULT_FPS = 30.0
-"""Frames a second of folders of frames; that of `open_source`, whose module is too heavy for `--help`."""
+from lightgesture.config import DEFAULT_FPS
 
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""

@@ -13,13 +13,13 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction
 from lightgesture.records import Record
 from lightgesture.results import to_json_line
-from lightgesture.sinks.outbox import RecordError
+from lightgesture.sinks.outbox import RecordError, Sink
 
 TIMEOUT_S: Final = 5.0
 """Seconds after which a command that is still running is killed; the next one waits for it."""
 
 
-class HookSink:
+class HookSink(Sink):
     """Runs a command, without a shell, with the record as one line of JSON on its standard input.
 
     Its standard output goes nowhere, for ours belongs to the records; its standard error is ours. A command that
@@ -29,15 +29,11 @@ class HookSink:
 
     def __init__(self, command: str) -> None:
         self.name = f"hook {command}"
-        self.keeps_old = False
         self._words = _split(command)
 
     def wants(self, record: Record) -> bool:
         """Accepted instructions only."""
         return isinstance(record, Instruction)
-
-    def open(self) -> None:
-        """Nothing stays open between commands."""
 
     def send(self, record: Record) -> None:
         """Run the command. RecordError: it could not be started, failed, or took too long."""
@@ -58,9 +54,6 @@ class HookSink:
             raise RecordError(f"{self.name}: cannot be run ({error.strerror})") from None
         if process.returncode:
             raise RecordError(f"{self.name}: failed with status {process.returncode}")
-
-    def close(self) -> None:
-        """Nothing stays open between commands."""
 
 
 def _standard_error() -> int | None:

@@ -8,7 +8,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction
 from lightgesture.records import HeartbeatRecord, Record
 from lightgesture.sinks.mavlink_map import MavlinkMap
-from lightgesture.sinks.outbox import SinkError
+from lightgesture.sinks.outbox import Sink, SinkError
 
 TEXT_BYTES = 50
 """Bytes of text in one STATUSTEXT."""
@@ -30,7 +30,7 @@ RECEIVED_READS: Final = 500
 """How often at most what others send is read away before a message is sent: enough for a second of a busy link."""
 
 
-class MavlinkSink:
+class MavlinkSink(Sink):
     """HEARTBEAT with each heartbeat record, STATUSTEXT for each accepted instruction, and what the map says.
 
     device: `udpout:HOST:PORT`, `udpin:`, `udpbcast:`, `tcp:`, `tcpin:`, or a serial device and its rate,
@@ -40,7 +40,6 @@ class MavlinkSink:
 
     def __init__(self, device: str, mapping: MavlinkMap | None = None) -> None:
         self.name = f"mavlink {device}"
-        self.keeps_old = False
         self._device = _check_device(device)
         self._mapping = mapping or MavlinkMap()
         self._mavutil, self._dialect = _import_pymavlink()

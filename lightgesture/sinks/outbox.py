@@ -2,9 +2,10 @@
 
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
-from typing import Final, Protocol
+from typing import Final
 
 from lightgesture.backoff import Backoff
 from lightgesture.records import Record
@@ -35,31 +36,29 @@ class SinkGoneError(Exception):
     """Nobody takes the records of this sink any more."""
 
 
-class Sink(Protocol):
-    """Takes records, in order; all calls come from one thread and may take their time.
-
-    name: for messages. keeps_old: whether a record that waited for long is still of use, as in a log. To a vehicle
-    it is not: an instruction that arrives late may meet another situation.
-    """
+class Sink(ABC):
+    """Takes records, in order; all calls come from one thread and may take their time."""
 
     name: str
-    keeps_old: bool
+    """For messages."""
 
-    def wants(self, record: Record) -> bool:
+    keeps_old = False
+    """Whether a record that waited for long is still of use, as in a log. To a vehicle it is not: an instruction that
+    arrives late may meet another situation."""
+
+    def wants(self, record: Record) -> bool:  # noqa: ARG002 - all of them
         """Whether to send the record at all; called from any thread, quick."""
-        ...
+        return True
 
-    def open(self) -> None:
+    def open(self) -> None:  # noqa: B027 - some need nothing
         """Make ready to send, also again after an error. SinkError: it cannot be."""
-        ...
 
+    @abstractmethod
     def send(self, record: Record) -> None:
         """Send one record. SinkError, RecordError, SinkGoneError: as they say."""
-        ...
 
-    def close(self) -> None:
+    def close(self) -> None:  # noqa: B027 - likewise
         """Give back what `open` took; also after a failed `open`, and twice."""
-        ...
 
 
 class Outbox:
@@ -82,11 +81,6 @@ class Outbox:
     def is_gone(self) -> bool:
         """Whether nobody takes the records any more."""
         return self._is_gone
-
-    @property
-    def dropped(self) -> int:
-        """Records that were never sent, because the queue was full or they became too old."""
-        return self._dropped
 
     def start(self) -> None:
         """Open the sink and begin to send."""

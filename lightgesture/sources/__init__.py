@@ -1,5 +1,6 @@
 """Pictures in: files, folders, bags and streams become frames, BGR with 8 bits, each with its time."""
 
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.sources.folder import natural_key
 from lightgesture.sources.pictures import is_picture_name, read_picture, to_image
 from lightgesture.sources.registry import (
@@ -11,7 +12,7 @@ from lightgesture.sources.registry import (
     open_source,
 )
 from lightgesture.sources.stream_frames import StreamFrames
-from lightgesture.sources.types import DEFAULT_FPS, Content, LiveSource, Source, SourceOptions
+from lightgesture.sources.types import Content, LiveSource, Source, SourceOptions
 
 __all__ = [
     "DEFAULT_FPS",

@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType, TracebackType
+from types import MappingProxyType
 from typing import Self
 from urllib.parse import urlsplit, urlunsplit
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
 from lightgesture.sources.pictures import depth_of
-from lightgesture.sources.types import SourceOptions
+from lightgesture.sources.types import LiveSource, SourceOptions
 
 NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
 """Beginnings of the addresses that FFmpeg opens."""
@@ -22,7 +22,7 @@ NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
 _VIDEO_DEVICE = re.compile(r"/dev/video(\d+)")
 
 
-class CaptureStream:
+class CaptureStream(LiveSource):
     """The pictures that one of OpenCV's back-ends reads from `target`, an index or a name.
 
     parameters: properties and values that opening must obey. wishes: likewise, which a driver need not know.
@@ -37,7 +37,6 @@ class CaptureStream:
         wishes: Mapping[int, float] = MappingProxyType({}),
     ) -> None:
         self.name = name
-        self.is_reopened = True
         self._target, self._backend = target, backend
         self._parameters, self._wishes = list(parameters), wishes
         self._capture: cv2.VideoCapture | None = None
@@ -55,9 +54,8 @@ class CaptureStream:
             self._capture.set(wish, value)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Let go of the device or the connection."""
         if self._capture is not None:
             self._capture.release()
             self._capture = None

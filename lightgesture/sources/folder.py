@@ -3,17 +3,16 @@
 import os
 import re
 from collections.abc import Iterator, Sequence
-from types import TracebackType
-from typing import Self
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.pictures import depth_of, is_picture_name, read_picture
+from lightgesture.sources.types import Source
 
 _NUMBER = re.compile(r"(\d+)")
 
 
-class FrameFolder:
+class FrameFolder(Source):
     """The pictures of one folder, or those that `files` names; other files and folders in it are passed over.
 
     A folder has no container's time stamps: the time of a frame is its index divided by `fps`. A picture
@@ -25,15 +24,7 @@ class FrameFolder:
         self.name = path
         self._fps = fps
         self._files = list(files) or _list_pictures(path)
-        self.frame_count: int | None = len(self._files)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Nothing is held open between frames."""
+        self.frame_count = len(self._files)
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[InputError] = []

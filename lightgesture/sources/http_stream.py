@@ -6,16 +6,16 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from types import TracebackType
 from typing import Self
 from urllib.parse import unquote, urlsplit, urlunsplit
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
 from lightgesture.sources.jpeg import JpegSplitter
+from lightgesture.sources.types import LiveSource
 
 
-class HttpStream:
+class HttpStream(LiveSource):
     """The JPEG files in the answer to one request, still encoded.
 
     Where the files begin and end is read from themselves, so that neither the boundary of a multipart answer nor
@@ -24,7 +24,6 @@ class HttpStream:
 
     def __init__(self, address: str) -> None:
         self._request, self.name = _make_request(address)
-        self.is_reopened = True
         self._answer: http.client.HTTPResponse | None = None
         # A camera on the tether is never behind a proxy.
         self._opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
@@ -38,9 +37,8 @@ class HttpStream:
             raise InputError(f"{self.name}: cannot be opened ({_reason(error)})") from None
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """End the connection."""
         if self._answer is not None:
             self._answer.close()
 

@@ -28,6 +28,7 @@ _FLAGS = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
 
 _START_OF_SCAN = 0xDA
 _END_OF_IMAGE = b"\xff\xd9"
+# Magic number, width, height and the largest value of a portable pixmap, with comments between.
 _PNM_HEADER = re.compile(rb"P[2356]" + rb"(?:\s|#[^\n]*\n)+(\d+)" * 3)
 
 
@@ -54,7 +55,7 @@ def read_picture(path: str | os.PathLike[str], depth: BitDepth | None = None) ->
             f"{name}: is no picture that can be read; convert it to PNG or JPEG, or leave it out"
         )
     depth = depth or depth_of(name)
-    if header := _PNM_HEADER.match(content):
+    if image.dtype == np.uint16 and (header := _PNM_HEADER.match(content)):
         depth.declare(min(int(header[3]), 0xFFFF))
     try:
         return depth.bgr8(image)
@@ -77,6 +78,17 @@ def depth_of(name: str) -> BitDepth:
     return BitDepth(lambda text: say(f"{name}: {text}"))
 
 
+def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:
+    """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads."""
+    # imdecode and not imread, which cannot open every name on every system
+    data = np.frombuffer(content, np.uint8)
+    try:
+        image: NDArray[Any] | None = cv2.imdecode(data, _FLAGS) if data.size else None
+    except cv2.error:  # a header that promises more pixels than OpenCV takes
+        return None
+    return image
+
+
 def _read_bytes(path: str) -> bytes:
     try:
         content = Path(path).read_bytes()
@@ -90,17 +102,6 @@ def _read_bytes(path: str) -> bytes:
     if not content:
         raise InputError(f"{path}: is empty (0 bytes); copy it again or leave it out")
     return content
-
-
-def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:
-    """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads."""
-    # imdecode and not imread, which cannot open every name on every system
-    data = np.frombuffer(content, np.uint8)
-    try:
-        image: NDArray[Any] | None = cv2.imdecode(data, _FLAGS) if data.size else None
-    except cv2.error:  # a header that promises more pixels than OpenCV takes
-        return None
-    return image
 
 
 def _is_cut_jpeg(content: bytes) -> bool:

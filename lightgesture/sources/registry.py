@@ -5,13 +5,14 @@ import os
 import stat
 from collections.abc import Callable, Iterable
 
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder, natural_key
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
-from lightgesture.sources.types import DEFAULT_FPS, LiveSource, Source, SourceOptions
+from lightgesture.sources.types import LiveSource, Source, SourceOptions
 from lightgesture.sources.video import VideoFile
 
 

@@ -1,7 +1,8 @@
 """Image messages of ROS 1 and ROS 2, raw and compressed, to pictures."""
 
 import sys
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -16,7 +17,8 @@ IMAGE_TYPES = (_RAW, _COMPRESSED)
 """Types of the messages that hold a picture."""
 
 
-class _Layout(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class _Layout:
     """Bits and values of a pixel in a row, and what OpenCV makes BGR with (None: BGR, BGRA or grey already)."""
 
     bits: int

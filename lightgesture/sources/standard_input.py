@@ -3,8 +3,7 @@
 import io
 import sys
 from collections.abc import Iterator
-from types import TracebackType
-from typing import IO, Self
+from typing import IO
 
 import numpy as np
 
@@ -12,13 +11,13 @@ from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.jpeg import JpegSplitter
 from lightgesture.sources.pictures import to_image
-from lightgesture.sources.types import CHUNK_BYTES, Content, SourceOptions
+from lightgesture.sources.types import CHUNK_BYTES, Content, LiveSource, Source, SourceOptions
 
 STANDARD_INPUT = "-"
 """What the user writes for it."""
 
 
-class StandardInputStream:
+class StandardInputStream(LiveSource):
     """The pictures of standard input as they come, still encoded if they are JPEG files.
 
     With `options.size` the bytes are raw pictures, blue, green, red, without anything between them.
@@ -30,14 +29,6 @@ class StandardInputStream:
         self.is_reopened = False
         self._size = options.size
         self._stream = stream or _open_raw()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Standard input is not ours to close."""
 
     def __iter__(self) -> Iterator[Content]:
         is_empty = True
@@ -81,22 +72,13 @@ def _open_raw() -> IO[bytes]:
         return sys.stdin.buffer
 
 
-class StandardInput:
+class StandardInput(Source):
     """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
 
     def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
-        self.frame_count: int | None = None
         self._fps = options.fps
         self._stream = StandardInputStream(options, stream)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Standard input is not ours to close."""
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[str] = []

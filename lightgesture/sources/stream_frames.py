@@ -2,17 +2,16 @@
 
 import time
 from collections.abc import Callable, Iterator
-from types import TracebackType
 from typing import Self
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources import types
 from lightgesture.sources.pictures import to_image
-from lightgesture.sources.types import LiveSource
+from lightgesture.sources.types import LiveSource, Source
 
 
-class StreamFrames:
+class StreamFrames(Source):
     """The pictures of a stream, each stamped as it comes, in seconds since the first; damaged ones are passed over.
 
     The stream is opened once. It has no end of its own, so that iterating it always ends by an InputError, unless
@@ -21,17 +20,15 @@ class StreamFrames:
 
     def __init__(self, stream: LiveSource, clock: Callable[[], float] = time.monotonic) -> None:
         self.name = stream.name
-        self.frame_count: int | None = None
         self._stream, self._clock = stream, clock
 
     def __enter__(self) -> Self:
         self._stream.__enter__()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._stream.__exit__(kind, error, trace)
+    def close(self) -> None:
+        """Close the stream."""
+        self._stream.close()
 
     def __iter__(self) -> Iterator[Frame]:
         start_s: float | None = None

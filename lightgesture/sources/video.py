@@ -2,8 +2,7 @@
 
 import os
 from collections.abc import Iterator
-from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 import cv2
 
@@ -11,6 +10,7 @@ from lightgesture.errors import InputError
 from lightgesture.features.image import as_bgr8
 from lightgesture.frames import Frame
 from lightgesture.sources.pictures import is_picture_name
+from lightgesture.sources.types import Source
 
 # A video counts as cut off when both more frames and more seconds are missing than are spared.
 
@@ -33,7 +33,7 @@ _MP4_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
 _TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1b")
 
 
-class VideoFile:
+class VideoFile(Source):
     """A video in any container that OpenCV's FFmpeg reads.
 
     Frames are read in sequence, never by seeking, and the time of each is the container's own time stamp
@@ -55,19 +55,15 @@ class VideoFile:
                 f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
             )
         promised = self._capture.get(cv2.CAP_PROP_FRAME_COUNT)
-        self.frame_count: int | None = int(promised) if promised >= 1 else None
+        self.frame_count = int(promised) if promised >= 1 else None
         self._rate = self._capture.get(cv2.CAP_PROP_FPS)
         self._next = self._read(0)
         if self._next is None:
             self._capture.release()
             raise InputError(f"{path}: no frame of this video can be decoded; copy or convert it again")
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Close the file."""
         self._capture.release()
 
     def __iter__(self) -> Iterator[Frame]:

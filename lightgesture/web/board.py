@@ -9,7 +9,8 @@ import uuid
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, Final, NamedTuple
+from dataclasses import dataclass
+from typing import Any, Final
 
 from lightgesture.features.types import Image
 from lightgesture.records import Record
@@ -22,7 +23,8 @@ ENTRIES_KEPT: Final = 200
 """Instructions, rejections and notices that are kept for who comes later."""
 
 
-class Picture(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
     """A picture to be drawn on, and the records since the one before that was taken."""
 
     number: int
@@ -30,7 +32,8 @@ class Picture(NamedTuple):
     records: tuple[Record, ...]
 
 
-class Update(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Update:
     """What is new for one reader. state: for display; entries: those that it has not had, oldest first."""
 
     version: int

@@ -131,7 +131,9 @@ def test_file_that_cannot_be_read(config, tmp_path):
         load("--config", config('out = "é"', encoding="latin-1"))
     with pytest.raises(UsageError, match="is larger than 1048576 bytes"):
         load("--config", config("#" * (1 << 20) + "#"))
-    with pytest.raises(UsageError, match=r"too deeply nested; keep to the layout of docs/batch\.md"):
+    with pytest.raises(
+        UsageError, match=r"too deeply nested; keep to the layout of deploy/lightgesture\.toml"
+    ):
         load("--config", config("a = " + "[" * 5000))
 
 

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.config.settings import DEFAULT_FPS
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError
 from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
 from lightgesture.sources.video import VideoFile

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import InputError, UsageError
-from lightgesture.sources import SourceOptions, StreamFrames, open_any
+from lightgesture.sources import LiveSource, SourceOptions, StreamFrames, open_any
 from lightgesture.sources.video import VideoFile
 
 PICTURE = np.zeros((48, 64, 3), np.uint8)
@@ -15,10 +15,10 @@ JPEG = cv2.imencode(".jpg", PICTURE)[1].tobytes()
 DAMAGED = JPEG[:40]
 
 
-class Stream:
+class Stream(LiveSource):
     """Gives what it was made of, then ends."""
 
-    name, is_reopened = "camera", True
+    name = "camera"
 
     def __init__(self, contents):
         self.contents, self.is_open = contents, False
@@ -27,7 +27,7 @@ class Stream:
         self.is_open = True
         return self
 
-    def __exit__(self, kind, error, trace):
+    def close(self):
         self.is_open = False
 
     def __iter__(self):

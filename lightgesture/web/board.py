@@ -151,6 +151,11 @@ class Board:
                 return None
             return self._jpeg_number, self._jpeg
 
+    @property
+    def viewers(self) -> int:
+        """How many look on."""
+        return self._viewers
+
     def _count_viewers(self, change: int) -> None:
         with self._changed:
             self._viewers += change

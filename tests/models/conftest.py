@@ -12,7 +12,6 @@ from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings
 from lightgesture.models import TrainingSample
-from lightgesture.training.svm.descent import DescentSettings
 from lightgesture.training.svm.machine import SvmSettings
 
 SMALL = VectorSettings(PatchSettings(size=24), HogSettings(rim=0, cell=6), ContourSettings(size=24))
@@ -43,8 +42,7 @@ def changed() -> Change:
 @pytest.fixture
 def quick() -> SvmSettings:
     """Settings that train in well under a second."""
-    descent = DescentSettings(steps=100, batch=64)
-    return SvmSettings(features=SMALL, directions=16, dimensions=8, centres=60, descent=descent, one_in=3)
+    return SvmSettings(features=SMALL, directions=16, centres=60, steps=60)
 
 
 @pytest.fixture
@@ -70,14 +68,14 @@ def draw() -> Callable[[str, int], np.ndarray]:
 
 @pytest.fixture
 def samples(draw: Callable[[str, int], np.ndarray]) -> list[TrainingSample]:
-    """Ninety drawings of three classes from six sources."""
+    """Ninety drawings of three classes from fifteen sources."""
     return [
         TrainingSample(
             image=draw(token, 100 * number + index),
             box=(5, 5, 50, 50),
             side="left",
             token=token,
-            source=f"source {index % 6}",
+            source=f"source {index % 15}",
         )
         for number, token in enumerate(("1", "5", "none"))
         for index in range(30)

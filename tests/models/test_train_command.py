@@ -5,11 +5,8 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.features.patch import PatchSettings
 from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
-from lightgesture.training.pool.patch_kinds import PoolSettings
-from lightgesture.training.svm.train import SvmTraining
 
 
 def train(folder: Path, out: Path, *more: str) -> int:
@@ -62,11 +59,6 @@ def test_steps_are_told_as_lines(folder: Path, tmp_path: Path, capsys: pytest.Ca
     assert capsys.readouterr().err == ""
 
 
-def test_the_machine_and_the_pool_have_one_patch(folder: Path) -> None:
-    with pytest.raises(ValueError, match="give both the same"):
-        SvmTraining(folder, pool=PoolSettings(patch=PatchSettings(24, 1.1)))
-
-
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
     for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
         assert train(folder, tmp_path / f"{name}.npz", "--seed", seed, "--quiet") == 0
@@ -89,7 +81,7 @@ def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> Non
     assert card["data"]["backgrounds"] == {"pictures": 12, "sources": ["background none"]}
     assert card["data"]["scenes"] == {"pictures": 1, "sources": 1}
     # Beside the rows of the same pictures without them.
-    assert card["training"]["rows"] > alone["training"]["rows"]
+    assert card["data"]["patches"] > alone["data"]["patches"]
 
 
 @pytest.mark.parametrize(

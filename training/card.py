@@ -48,15 +48,16 @@ def limits(rows: Sequence[HandRow], held_out: HeldOut, classes: Sequence[str]) -
     """What this training could not learn or not tell, a line each."""
     lines = []
     pictures = Counter(row.token for row in rows)
-    for name in [name for name in classes if name in pictures]:
-        sources = {row.source for row in rows if row.token == name}
-        if len(sources) == 1:
-            lines.append(
-                f"class {name}: all {pictures[name]} pictures come from one source ({min(sources)}); it may have "
-                "learnt that person or room: add pictures of others"
-            )
-        if pictures[name] < FEW:
-            lines.append(f"class {name}: {pictures[name]} pictures are few: add more")
+    sources = {name: {row.source for row in rows if row.token == name} for name in pictures}
+    alone = [f"{name} ({min(sources[name])})" for name in classes if len(sources.get(name, ())) == 1]
+    if alone:
+        lines.append(
+            f"classes whose pictures come from one source: {', '.join(alone)}; what was learnt may be "
+            "that person or room, add pictures of others"
+        )
+    few = [f"{name} ({pictures[name]})" for name in classes if 0 < pictures[name] < FEW]
+    if few:
+        lines.append(f"classes of few pictures: {', '.join(few)}; add more")
     if not rows:
         lines.append("trained on rendered hands alone: no real hand was seen")
     if not held_out.original.any():

@@ -70,8 +70,8 @@ def test_limits_say_what_this_training_could_not_learn():
     lines = limits(rows, answers(5, "b"), ("up", "down"))
     for number, words in enumerate(
         [
-            "class up: 6 pictures are few",
-            f"class down: all {FEW + 1} pictures come from one source (b)",
+            "classes whose pictures come from one source: down (b)",
+            "classes of few pictures: up (6)",
             "no source was held out",
             "probabilities are not calibrated: 5 hands",
             "there is no class none",

@@ -132,14 +132,14 @@ def _check_class(place: str, name: str, remedy: str) -> None:
 def _folder_rows(folder: Path) -> list[HandRow]:
     # Hidden folders are not the user's: tools and systems keep theirs beside pictures.
     own = sorted(entry for entry in folder.iterdir() if entry.is_dir() and not entry.name.startswith("."))
-    rows = []
+    rows: list[HandRow] = []
     for entry in own:
         _check_class(str(folder), entry.name, "name the folder")
         pictures = [path for path in sorted(entry.rglob("*")) if is_picture_name(path)]
         if not pictures:
             raise UsageError(f"{entry}: holds no pictures; add some of this class or remove the folder")
         rows += [
-            HandRow(path, entry.name, source=f"{folder.name}/{path.parent.relative_to(entry)}")
+            HandRow(path, entry.name, source=str(folder.name / path.parent.relative_to(entry)))
             for path in pictures
         ]
     return rows

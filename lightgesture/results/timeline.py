@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NOT_READ = "not read"
 TOKENS = (NOT_READ, *(token for token in CLASSES if token != NONE))
-"""The first rows of the picture, from the bottom; a hand without a token stands in the lowest, own signs stand above."""
+"""The first rows of the picture, from the bottom: a hand without a token stands in the lowest, own signs above."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,12 @@
 import io
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.outline.contours import ContourSettings
@@ -20,6 +21,13 @@ SMALL = VectorSettings(PatchSettings(size=24), HogSettings(rim=0, cell=6), Conto
 
 Change = Callable[[Path, Callable[[dict[str, Any], dict[str, np.ndarray]], None]], Path]
 """Changes header and arrays of a model file."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _one_blas_thread() -> Iterator[None]:
+    """Trainings as small as these are quicker on one thread, and much quicker where others use the cores."""
+    with threadpool_limits(1, "blas"):
+        yield
 
 
 @pytest.fixture
@@ -42,7 +50,7 @@ def changed() -> Change:
 @pytest.fixture
 def quick() -> SvmSettings:
     """Settings that train in well under a second."""
-    return SvmSettings(features=SMALL, directions=16, centres=60, steps=60)
+    return SvmSettings(features=SMALL, directions=16, centres=60, steps=15)
 
 
 @pytest.fixture

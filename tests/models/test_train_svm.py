@@ -90,7 +90,7 @@ def test_of_very_few_samples_none_is_kept(samples: list[TrainingSample], quick: 
 def test_a_sample_of_no_weight_teaches_nothing(samples: list[TrainingSample], quick: SvmSettings) -> None:
     """All of class 5 that is learnt from is called 1 as well, but without weight."""
     lies = [replace(sample, token="1", weight=0.0) for sample in samples if sample.token == "5"]
-    settings = replace(quick, steps=200)
+    settings = replace(quick, steps=100)
     _, held_out = train_svm([*samples, *lies], settings, classes=NAMES)
     honest = held_out.truth == 1
     assert (held_out.probabilities.argmax(axis=1)[honest] == 1).mean() > 0.9

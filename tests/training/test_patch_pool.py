@@ -20,7 +20,7 @@ from lightgesture.training.pool.patch_kinds import (
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import LabelledHand
 
-SETTINGS = PoolSettings(copies=2, rounds=1, rendered=6)
+SETTINGS = PoolSettings(copies=2, rounds=1, rendered=0)
 
 
 def picture(seed, size=80):
@@ -37,7 +37,7 @@ def originals():
 
 
 def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
-    pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
+    pool = make_pool(originals, replace(SETTINGS, rendered=6), 0, 1, tmp_path, lambda *_: None)
     assert pool.patches.shape[1:] == (36, 36, 3)
     assert len(pool.patches) == len(pool.contours) == len(pool.tokens) == len(pool.sources) == len(pool.hands)
     assert (np.bincount(pool.hands[pool.hands >= 0]) == SETTINGS.copies + SETTINGS.mild_copies).all()
@@ -53,11 +53,13 @@ def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
     assert any(source.startswith("synthetic") for source in pool.sources)
 
 
+@pytest.mark.slow
 def test_processes_and_reruns_change_nothing(originals, tmp_path):
-    alone = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", lambda *_: None)
-    shared = make_pool(originals, SETTINGS, 3, 2, tmp_path / "b", lambda *_: None)
-    again = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", pytest.fail)
-    other = make_pool(originals, SETTINGS, 4, 1, tmp_path / "c", lambda *_: None)
+    settings = replace(SETTINGS, rendered=6)
+    alone = make_pool(originals, settings, 3, 1, tmp_path / "a", lambda *_: None)
+    shared = make_pool(originals, settings, 3, 2, tmp_path / "b", lambda *_: None)
+    again = make_pool(originals, settings, 3, 1, tmp_path / "a", pytest.fail)
+    other = make_pool(originals, settings, 4, 1, tmp_path / "c", lambda *_: None)
     for pool in (shared, again):
         np.testing.assert_array_equal(alone.patches, pool.patches)
         np.testing.assert_array_equal(alone.contours, pool.contours)
@@ -157,7 +159,7 @@ def test_mild_copies_stay_near_their_hand(originals, tmp_path):
         plain = cut_patch(image, hands[0].box, "left", KEPT)
         return np.abs(last.astype(int) - plain).mean()
 
-    none = replace(SETTINGS, mild_share=0.0, rendered=0)
+    none = replace(SETTINGS, mild_share=0.0)
     assert mean_distance(replace(none, mild_share=0.5)) < 0.5 * mean_distance(none)
 
 

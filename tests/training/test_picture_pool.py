@@ -37,6 +37,7 @@ def assert_same(first, second):
         assert (one.boxes, one.faces, one.sources) == (other.boxes, other.faces, other.sources)
 
 
+@pytest.mark.slow
 def test_two_processes_compose_what_one_does(ingredients, pool, tmp_path):
     assert_same(pool, compose_pool(ingredients, COUNT, 3, 2, tmp_path / "two.npy"))
 

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from lightgesture.training.pool.patch_pool import PatchPool, make_pool
 from lightgesture.training.pool.pool_samples import ALTERED_WEIGHT, pool_samples
 from lightgesture.training.pool.samples import LabelledHand
 
-SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=4)
+SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=0)
 
 
 def hand(token: str, source: str) -> LabelledHand:
@@ -73,7 +74,7 @@ def test_a_row_is_seen_as_the_net_sees_it_shifted_within_its_margin(
 
 def test_rendered_hands_alone_are_the_originals(tmp_path: Path) -> None:
     nothing = Originals([])
-    pool = pool_of(nothing, tmp_path / "pool")
+    pool = make_pool(nothing, replace(SETTINGS, rendered=4), 0, 1, tmp_path, lambda *_: None)
     rows = np.ones(len(pool.tokens), bool)
     found = list(pool_samples(pool, nothing, rows, np.zeros(0, bool), SETTINGS, 0))
     assert found

@@ -113,6 +113,7 @@ def test_without_any_change_the_light_stays_and_each_change_is_felt():
     np.testing.assert_allclose(composed.astype(int), picture, atol=1)
 
 
+@pytest.mark.slow
 def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
     pytest.importorskip("torch")
     from lightgesture.training.nets.locator import train_locator

@@ -8,15 +8,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from lightgesture.benchmarks.contact_sheet import Image, choose_evenly, draw_tile, save_picture, save_sheet
-from lightgesture.benchmarks.hand_bank import build_bank
-from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, product
-from lightgesture.benchmarks.region_tables import (
+from lightgesture.benchmarks.finding.region_tables import (
     instructions_table,
     negatives_table,
     regions_table,
     tokens_table,
 )
-from lightgesture.benchmarks.regions import Progress, Run, run_methods
+from lightgesture.benchmarks.finding.regions import Run, run_methods
+from lightgesture.benchmarks.methods import Classifier, Method, PaperMethod, product
+from lightgesture.benchmarks.paper.bank import build_bank
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.benchmarks.tables import Table
 from lightgesture.features.find.selector import SELECTORS, SelectorName

@@ -13,9 +13,8 @@ import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from lightgesture.archive.folder import MANIFEST
 from lightgesture.console import print_line
@@ -27,45 +26,44 @@ TIMES = ("ms_per_frame", "stages_ms")
 BROKEN = ("broken_cut.mp4", "broken_empty.mp4", "broken_text.mp4")
 
 
-@dataclass(frozen=True, slots=True)
-class ArchiveSettings:
-    """What is made and how it is decoded.
+CLIPS: Final = 37
+"""Whole clips; the broken ones come besides."""
 
-    clips: whole ones; three broken ones come besides. frames: of each, every `step`-th of a rendered dive, so that a
-    few hold several signs. size: width and height, pixels. hold: frames that make a sign, few as the clips are short.
-    share: part of the clips that is done when a run is broken off.
-    """
+FRAMES, STEP = 16, 6
+"""Of each clip every sixth frame of a rendered dive, so that a few hold several signs."""
 
-    clips: int = 37
-    frames: int = 16
-    step: int = 6
-    size: tuple[int, int] = (320, 240)
-    hold: int = 2
-    share: float = 0.3
+SIZE: Final = (320, 240)
+"""Width and height, pixels."""
+
+HOLD: Final = 2
+"""Frames that make a sign, few as the clips are short."""
+
+DONE_SHARE: Final = 0.3
+"""Part of the clips that is done when a run is broken off."""
 
 
-def make_clips(folder: Path, settings: ArchiveSettings) -> None:
+def make_clips(folder: Path, count: int) -> None:
     """Render the whole clips, `clip_<n>.mp4`, and make the broken ones of the first."""
     from lightgesture.synth.output import video_writer
     from lightgesture.synth.scene import Scene
     from lightgesture.synth.variety import draw_spec
 
-    for number in range(settings.clips):
-        spec = draw_spec(number, "demo", "water", None, 0.1).model_copy(update={"size": settings.size})
+    for number in range(count):
+        spec = draw_spec(number, "demo", "water", None, 0.1).model_copy(update={"size": SIZE})
         scene = Scene(spec)
         with video_writer(folder / f"clip_{number}.mp4", spec.fps, spec.size) as put:
-            for index in range(0, settings.frames * settings.step, settings.step):
+            for index in range(0, FRAMES * STEP, STEP):
                 put(scene.frame(index).image)
     whole = (folder / "clip_0.mp4").read_bytes()
     for name, content in zip(BROKEN, (whole[: len(whole) // 2], b"", b"no video\n"), strict=True):
         (folder / name).write_bytes(content)
 
 
-def start(clips: Path, out: Path, settings: ArchiveSettings, *options: str) -> "subprocess.Popen[str]":
+def start(clips: Path, out: Path, *options: str) -> "subprocess.Popen[str]":
     """A process that decodes all clips to `out`."""
     inputs = [*sorted(str(path) for path in clips.glob("*.mp4"))]
     command = [sys.executable, "-m", "lightgesture", "decode", *inputs, "--out", str(out)]
-    command += ["--hold", str(settings.hold), "--frames", *options]
+    command += ["--hold", str(HOLD), "--frames", *options]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
@@ -82,9 +80,9 @@ def done(out: Path) -> dict[str, float]:
     return {stem: (out / f"{stem}.jsonl").stat().st_mtime_ns for stem in stems}
 
 
-def check_whole_run(clips: Path, out: Path, settings: ArchiveSettings, *options: str) -> list[str]:
+def check_whole_run(clips: Path, out: Path, count: int, *options: str) -> list[str]:
     """What is wrong with an undisturbed run; nothing when all is as promised."""
-    process = start(clips, out, settings, *options)
+    process = start(clips, out, *options)
     _, errors = process.communicate()
     wrong = []
     if process.returncode != ExitStatus.SOME_FAILED:
@@ -92,7 +90,7 @@ def check_whole_run(clips: Path, out: Path, settings: ArchiveSettings, *options:
     named = [line for line in errors.splitlines() if line.startswith(f"lightgesture: {clips}")]
     if len(named) != len(BROKEN) or any(name not in line for name, line in zip(BROKEN, named, strict=False)):
         wrong.append(f"failures named: {named}")
-    stems = {f"clip_{number}" for number in range(settings.clips)}
+    stems = {f"clip_{number}" for number in range(count)}
     expected = {f"{stem}{suffix}" for stem in stems for suffix in (".jsonl", ".csv", ".vtt")}
     if set(results(out)) != expected:
         wrong.append(f"files: {sorted(set(results(out)) ^ expected)} missing or too many")
@@ -100,21 +98,21 @@ def check_whole_run(clips: Path, out: Path, settings: ArchiveSettings, *options:
 
 
 def check_broken_off(
-    clips: Path, out: Path, settings: ArchiveSettings, stop: signal.Signals, expected: dict[str, Any]
+    clips: Path, out: Path, count: int, stop: signal.Signals, expected: dict[str, Any]
 ) -> tuple[int, list[str]]:
     """Break a run off in the middle and run again: how many clips were done by then, and what is wrong."""
-    process = start(clips, out, settings)
-    while len(done(out)) < settings.share * settings.clips and process.poll() is None:
+    process = start(clips, out)
+    while len(done(out)) < DONE_SHARE * count and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(stop)
     process.communicate()
     before = done(out)
     wrong = []
-    if not 0 < len(before) < settings.clips:
-        wrong.append(f"{len(before)} of {settings.clips} clips done: not broken off in the middle")
+    if not 0 < len(before) < count:
+        wrong.append(f"{len(before)} of {count} clips done: not broken off in the middle")
     if stop == signal.SIGTERM and process.returncode != ExitStatus.INTERRUPTED:
         wrong.append(f"exit status {process.returncode}, not {int(ExitStatus.INTERRUPTED)}")
-    wrong += check_whole_run(clips, out, settings)
+    wrong += check_whole_run(clips, out, count)
     after = done(out)
     twice = [stem for stem, written in before.items() if after.get(stem) != written]
     if twice:
@@ -127,25 +125,24 @@ def check_broken_off(
 def main(argv: Sequence[str] | None = None) -> int:
     """Run all checks; 0 when all hold."""
     parser = argparse.ArgumentParser(prog="lightgesture.benchmarks.archive", description=__doc__)
-    parser.add_argument("--clips", type=int, default=ArchiveSettings().clips, metavar="N", help="whole clips")
+    parser.add_argument("--clips", type=int, default=CLIPS, metavar="N", help="whole clips")
     parser.add_argument(
         "--keep", type=Path, metavar="DIR", help="folder of the clips, made where it is missing"
     )
     args = parser.parse_args(argv)
-    settings = ArchiveSettings(clips=args.clips)
     with tempfile.TemporaryDirectory() as temporary:
         place = Path(temporary)
         clips = args.keep or place / "clips"
         if not clips.is_dir():
             clips.mkdir(parents=True)
-            make_clips(clips, settings)
-        wrong = _told("undisturbed", "", check_whole_run(clips, place / "whole", settings))
+            make_clips(clips, args.clips)
+        wrong = _told("undisturbed", "", check_whole_run(clips, place / "whole", args.clips))
         expected = results(place / "whole")
-        wrong += _told("one job", "", check_whole_run(clips, place / "one", settings, "--jobs", "1"))
+        wrong += _told("one job", "", check_whole_run(clips, place / "one", args.clips, "--jobs", "1"))
         if results(place / "one") != expected:
             wrong += _told("one job", "", ["other results than with several"])
         for stop in (signal.SIGTERM, signal.SIGKILL):
-            count, found = check_broken_off(clips, place / stop.name, settings, stop, expected)
+            count, found = check_broken_off(clips, place / stop.name, args.clips, stop, expected)
             wrong += _told(stop.name, f" after {count} clips, run again", found)
     return ExitStatus.SOME_FAILED if wrong else ExitStatus.OK
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.types import Box
+from lightgesture.results.atomic import replacing
 from lightgesture.training.datasets import Label
 
 Image = NDArray[np.uint8]
@@ -99,7 +100,5 @@ def save_picture(path: Path, picture: Image) -> None:
     coded, content = cv2.imencode(path.suffix, picture)
     if not coded:
         raise ValueError(f"{path}: OpenCV could not encode the picture")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_bytes(content.tobytes())
-    temporary.replace(path)
+    with replacing(path) as temporary:
+        temporary.write_bytes(content.tobytes())

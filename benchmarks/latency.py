@@ -10,26 +10,43 @@ import os
 import platform
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks.finding_latency import finding_times, fresh_starts
-from lightgesture.benchmarks.hand_bank import build_bank
-from lightgesture.benchmarks.paper_chain import PaperChain
+from lightgesture.benchmarks.finding.latency import STARTS, finding_times, fresh_starts
+from lightgesture.benchmarks.paper.bank import build_bank
+from lightgesture.benchmarks.paper.chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
-from lightgesture.benchmarks.timing import Image, LatencySettings, limited_threads, time_calls, time_pipeline
+from lightgesture.benchmarks.timing import (
+    ROUNDS,
+    SIZE,
+    THREADS,
+    WARM_UP,
+    Image,
+    limited_threads,
+    time_calls,
+    time_pipeline,
+)
 from lightgesture.cli import exit_status
+from lightgesture.config.parsers import positive
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
+from lightgesture.results.atomic import replacing
 from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, read_frames
+
+MOST_FRAMES: Final = 150
+"""Frames of a clip that are used."""
+
+SEQUENCE: Final = "hover"
+"""The group of the data folder that is timed beside the bundled clip."""
 
 PAPER = "paper's region selection"
 """Row of the baseline's chain."""
@@ -39,16 +56,16 @@ def measure(
     clips: Mapping[str, Sequence[Image]],
     model: str,
     paper: Callable[[], PaperChain] | None,
-    settings: LatencySettings,
+    rounds: int,
 ) -> list[dict[str, Cell]]:
     """One row per clip, number of threads and stage; paper makes the paper's chain, None leaves it out."""
     rows = []
     for clip, frames in clips.items():
-        for threads in settings.threads:
+        for threads in THREADS:
             with limited_threads(threads):
-                times = dict(time_pipeline(frames, model, settings))
+                times = dict(time_pipeline(frames, model, rounds))
                 if paper is not None:
-                    times[PAPER] = time_calls(paper().process, frames, settings)
+                    times[PAPER] = time_calls(paper().process, frames, rounds)
             rows += [_row(clip, threads, stage, values) for stage, values in times.items()]
     return rows
 
@@ -64,23 +81,23 @@ def _row(clip: str, threads: int, stage: str, times: Sequence[float]) -> dict[st
     }
 
 
-def latency_table(rows: Sequence[Mapping[str, Cell]], settings: LatencySettings) -> Table:
+def latency_table(rows: Sequence[Mapping[str, Cell]]) -> Table:
     """The rows as a table."""
-    width, height = settings.size
+    width, height = SIZE
     title = f"Milliseconds a call at {width} x {height}, reading and scaling of the frames not included"
     return Table("latency", title, ("clip", "threads", "stage", "calls", "median_ms", "p95_ms"), tuple(rows))
 
 
-def read_clips(data: Path | None, settings: LatencySettings) -> dict[str, list[Image]]:
+def read_clips(data: Path | None) -> dict[str, list[Image]]:
     """The bundled clip and, where there is a data folder, its sequence, scaled to one size."""
     clips: dict[str, list[Image]] = {}
     if SAMPLE.is_file():
         with open_source(SAMPLE) as source:
-            images = [frame.image for frame, _ in zip(source, range(settings.most_frames), strict=False)]
-        clips[SAMPLE.name] = [_scaled(image, settings) for image in images]
+            images = [frame.image for frame, _ in zip(source, range(MOST_FRAMES), strict=False)]
+        clips[SAMPLE.name] = [_scaled(image) for image in images]
     if data is not None and (data / "frames").is_dir():
-        samples = group_samples(read_frames(data)).get(settings.sequence, [])[: settings.most_frames]
-        clips[settings.sequence] = [_scaled(read_picture(sample.path), settings) for sample in samples]
+        samples = group_samples(read_frames(data)).get(SEQUENCE, [])[:MOST_FRAMES]
+        clips[SEQUENCE] = [_scaled(read_picture(sample.path)) for sample in samples]
     clips = {name: frames for name, frames in clips.items() if frames}
     if not clips:
         raise InputError(
@@ -89,8 +106,8 @@ def read_clips(data: Path | None, settings: LatencySettings) -> dict[str, list[I
     return clips
 
 
-def _scaled(image: Image, settings: LatencySettings) -> Image:
-    return np.asarray(cv2.resize(image, settings.size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+def _scaled(image: Image) -> Image:
+    return np.asarray(cv2.resize(image, SIZE, interpolation=cv2.INTER_AREA), dtype=np.uint8)
 
 
 def describe_machine() -> dict[str, str | int | None]:
@@ -107,30 +124,38 @@ def describe_machine() -> dict[str, str | int | None]:
 
 def write_json(path: Path, content: object) -> None:
     """Write a JSON file, whole or not at all. UsageError: it cannot be written."""
-    temporary = path.with_name(path.name + ".part")
-    try:
+    with replacing(path) as temporary:
         temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another with --out") from error
 
 
 def run(args: argparse.Namespace) -> int:
     """Measure, print the table, write the file; 0 when all was done."""
-    settings = replace(LatencySettings(), rounds=args.rounds)
     data = _find_data(args.data)
-    clips = read_clips(data, settings)
+    clips = read_clips(data)
     try:
-        rows = measure(clips, args.model, _paper_maker(data), settings)
+        rows = measure(clips, args.model, _paper_maker(data), args.rounds)
     except ModelError as error:
         raise UsageError(str(error)) from error
-    tables = [latency_table(rows, settings), finding_times(clips, settings), fresh_starts(settings)]
+    tables = [latency_table(rows), finding_times(clips, args.rounds), fresh_starts()]
     print_line(to_text(tables))
     if args.out:
         found = [row for table in tables for row in table.to_dicts()]
-        content = {"machine": describe_machine(), "settings": asdict(settings), "rows": found}
+        content = {"machine": describe_machine(), "settings": _told(args.rounds), "rows": found}
         write_json(Path(args.out), content)
     return ExitStatus.OK
+
+
+def _told(rounds: int) -> dict[str, object]:
+    """What is timed, and how often, for the file."""
+    return {
+        "size": SIZE,
+        "rounds": rounds,
+        "warm_up": WARM_UP,
+        "threads": THREADS,
+        "most_frames": MOST_FRAMES,
+        "sequence": SEQUENCE,
+        "starts": STARTS,
+    }
 
 
 def _paper_maker(data: Path | None) -> Callable[[], PaperChain] | None:
@@ -151,12 +176,6 @@ def _find_data(folder: str | None) -> Path | None:
         return None
 
 
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is no whole number of at least 1")
-    return int(text)
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(
@@ -166,9 +185,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--data", metavar="DIR", help="folder of labelled pictures (default: ../shared/data)")
     parser.add_argument("--model", default="cnn", metavar="cnn|svm|PATH", help="classifier (default: cnn)")
     parser.add_argument("--out", metavar="FILE.json", help="write the figures and the machine here")
-    parser.add_argument(
-        "--rounds", type=_count, default=LatencySettings().rounds, metavar="N", help="passes over a clip"
-    )
+    parser.add_argument("--rounds", type=positive, default=ROUNDS, metavar="N", help="passes over a clip")
     args = parser.parse_args(argv)
     return exit_status(lambda: run(args), "nothing was written")
 

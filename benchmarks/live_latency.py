@@ -17,7 +17,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO
+from typing import IO, Final
 
 from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.mjpeg_server import MjpegServer, read_jpegs
@@ -29,20 +29,20 @@ from lightgesture.errors import ExitStatus, InputError
 TITLE = "Live: from the frame to its record"
 
 
-@dataclass(frozen=True, slots=True)
-class LiveLatencySettings:
-    """fps: frames a second that the server sends. seconds: length of the run after the warm-up.
+FPS: Final = 60.0
+"""Frames a second that the server sends."""
 
-    warm_up_s: seconds at the start that do not count, in which the program starts and loads its models.
-    memory_every_s: seconds from one look at the memory to the next. heartbeat_s: from one heartbeat to the next, less
-    than a frame time.
-    """
+SECONDS: Final = 600.0
+"""Length of the run after the warm-up."""
 
-    fps: float = 60.0
-    seconds: float = 600.0
-    warm_up_s: float = 10.0
-    memory_every_s: float = 5.0
-    heartbeat_s: float = 0.01
+WARM_UP_S: Final = 10.0
+"""Seconds at the start that do not count, in which the program starts and loads its models."""
+
+MEMORY_EVERY_S: Final = 5.0
+"""Seconds from one look at the memory to the next."""
+
+HEARTBEAT_S: Final = 0.01
+"""Seconds from one heartbeat to the next, less than a frame time."""
 
 
 @dataclass(slots=True)
@@ -60,7 +60,7 @@ class Run:
     dropped: int = 0
 
 
-def measure(clip: str, cage: Sequence[str], settings: LiveLatencySettings) -> Run:
+def measure(clip: str, cage: Sequence[str], fps: float, seconds: float) -> Run:
     """Run the server and the program. InputError: no clip, or the program ended early."""
     sent_s: dict[int, float] = {}
     pictures = read_jpegs(clip)
@@ -68,24 +68,28 @@ def measure(clip: str, cage: Sequence[str], settings: LiveLatencySettings) -> Ru
     def note(number: int) -> None:
         sent_s[number] = time.monotonic()
 
-    with MjpegServer(pictures, settings.fps, note=note) as server, _live(server.address, cage) as child:
+    with MjpegServer(pictures, fps, note=note) as server, _live(server.address, cage) as child:
         assert child.stdout is not None
         run = Run()
         start_s, memory_s = time.monotonic(), 0.0
         for line in child.stdout:
             now_s = time.monotonic()
-            _take(json.loads(line), now_s, sent_s, run, now_s - start_s > settings.warm_up_s)
-            if now_s - start_s > settings.warm_up_s + settings.seconds:
+            take(json.loads(line), now_s, sent_s, run, now_s - start_s > WARM_UP_S)
+            if now_s - start_s > WARM_UP_S + seconds:
                 return run
-            if now_s - start_s > settings.warm_up_s and now_s - memory_s > settings.memory_every_s:
+            if now_s - start_s > WARM_UP_S and now_s - memory_s > MEMORY_EVERY_S:
                 memory_s = now_s
                 run.memory_mib.append(memory_mib(_find_python(child.pid)))
     raise InputError(f"lightgesture live ended with status {child.returncode}")
 
 
-def _take(
+def take(
     record: dict[str, object], now_s: float, sent_s: dict[int, float], run: Run, is_counted: bool
 ) -> None:
+    """Note what a record of the program says; of its frames only those that count.
+
+    now_s: when it was read; sent_s: when each frame went out, both of the system's monotonic clock.
+    """
     match record:
         case {"type": "frame", "frame": int(index)} if is_counted:
             run.ages_ms.append((now_s - sent_s[index]) * 1e3)
@@ -107,15 +111,14 @@ def _live(address: str, cage: Sequence[str]) -> Iterator["subprocess.Popen[str]"
         _end(child)
 
 
-def decode(address: str, settings: LiveLatencySettings) -> int:
+def decode(address: str) -> int:
     """What the other process does: decode the stream with a heartbeat after each frame."""
     from lightgesture.actions.live import run_live
     from lightgesture.config.settings import DecodeSettings
-    from lightgesture.live import LiveSettings
 
     options = DecodeSettings.model_validate({"json": True, "frames": True, "quiet": True})
     with native_messages_muted():
-        return run_live(address, options, live_settings=LiveSettings(heartbeat_s=settings.heartbeat_s))
+        return run_live(address, options, heartbeat_s=HEARTBEAT_S)
 
 
 def _end(child: "subprocess.Popen[str]") -> None:
@@ -140,9 +143,9 @@ def memory_mib(number: int) -> float:
     return next(int(line.split()[1]) / 1024 for line in lines if line.startswith("VmRSS:"))
 
 
-def table(run: Run, settings: LiveLatencySettings) -> Table:
+def table(run: Run, fps: float) -> Table:
     """Ages, how many keep the bound of two frame times and the frame's own processing, memory, frames passed over."""
-    spare_ms = 2e3 / settings.fps
+    spare_ms = 2e3 / fps
     processing_ms = [spent_ms for _, spent_ms in run.pairs_ms]
     within = sum(age_ms <= spare_ms + spent_ms for age_ms, spent_ms in run.pairs_ms)
     values: dict[str, Cell] = {
@@ -165,31 +168,25 @@ def table(run: Run, settings: LiveLatencySettings) -> Table:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Measure and print the table."""
-    default = LiveLatencySettings()
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)
     parser.add_argument(
         "clip", nargs="?", default=str(SAMPLE), metavar="CLIP", help="default: the bundled one"
     )
-    parser.add_argument(
-        "--fps", type=float, default=default.fps, metavar="F", help=f"default {default.fps:g}"
-    )
-    parser.add_argument(
-        "--seconds", type=float, default=default.seconds, metavar="S", help=f"default {default.seconds:g}"
-    )
+    parser.add_argument("--fps", type=float, default=FPS, metavar="F", help=f"default {FPS:g}")
+    parser.add_argument("--seconds", type=float, default=SECONDS, metavar="S", help=f"default {SECONDS:g}")
     parser.add_argument("--cage", default="", metavar="WORDS", help="words that stand before the command")
     parser.add_argument(
         "--decode", metavar="ADDRESS", help="only decode a stream, as the measured process does"
     )
     args = parser.parse_args(argv)
-    settings = LiveLatencySettings(fps=args.fps, seconds=args.seconds)
     if args.decode is not None:
-        return decode(args.decode, settings)
+        return decode(args.decode)
     try:
-        run = measure(args.clip, shlex.split(args.cage), settings)
+        run = measure(args.clip, shlex.split(args.cage), args.fps, args.seconds)
     except InputError as error:
         say(str(error))
         return ExitStatus.SOME_FAILED
-    print_line(to_text([table(run, settings)]))
+    print_line(to_text([table(run, args.fps)]))
     return ExitStatus.OK
 
 

@@ -7,12 +7,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.hand_bank import HandBank
-from lightgesture.benchmarks.paper_chain import PaperChain, PaperHand
+from lightgesture.benchmarks.paper.bank import HandBank
+from lightgesture.benchmarks.paper.chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box
-from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Word, load_grammar
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, Word, load_grammar
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord
 
@@ -166,7 +166,9 @@ class _PaperStream:
     def process(self, image: Image, time_s: float) -> list[Reading]:
         readings = self._method.name_hands(image, self._chain.process(image))
         tokens = {reading.side: reading.token for reading in readings}
-        self._events.extend(self._decoder.step(tokens.get("left"), tokens.get("right"), time_s))
+        self._events.extend(
+            self._decoder.step(Signs.of_tokens(tokens.get("left"), tokens.get("right")), time_s)
+        )
         return readings
 
     def finish(self) -> Decoded:

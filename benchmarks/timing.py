@@ -1,10 +1,9 @@
 """Timing of calls and of the pipeline's stages, with a fixed number of threads and after a warm-up."""
 
-from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from time import perf_counter
+from typing import Final
 
 import cv2
 import numpy as np
@@ -22,55 +21,29 @@ FRAME = "frame, all stages"
 SINGLE = "single picture"
 
 
-@dataclass(frozen=True, slots=True)
-class LatencySettings:
-    """What is timed, and how often.
+SIZE: Final = (640, 480)
+"""Width and height of the frames, pixels: those of the published figures."""
 
-    size: width and height of the frames, pixels; 640 x 480 is that of the published figures.
-    rounds: passes over a clip; more make the percentiles steadier.
-    warm_up: frames before the clock starts, for caches and the birth of tracks.
-    threads: numbers of threads to measure, of OpenCV and of NumPy's linear algebra alike.
-    most_frames: frames of a clip that are used.
-    sequence: the group of the data folder that is timed beside the bundled clip.
-    starts: new processes whose start is timed, 1 to 20.
-    """
+ROUNDS: Final = 5
+"""Passes over a clip; more make the percentiles steadier."""
 
-    size: tuple[int, int] = (640, 480)
-    rounds: int = 5
-    warm_up: int = 10
-    threads: tuple[int, ...] = (1, 2)
-    most_frames: int = 150
-    sequence: str = "hover"
-    starts: int = 5
+WARM_UP: Final = 10
+"""Frames before the clock starts, for caches and the birth of tracks."""
+
+THREADS: Final = (1, 2)
+"""Numbers of threads to measure, of OpenCV and of NumPy's linear algebra alike."""
 
 
-class RecordingClock(StageClock):
-    """A stage clock that keeps every time, in milliseconds."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.times: dict[str, list[float]] = defaultdict(list)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time one stage of the current frame."""
-        start = perf_counter()
-        with super().stage(name):
-            yield
-        self.times[name].append((perf_counter() - start) * 1e3)
-
-
-class TimedPipeline(Pipeline):
-    """The pipeline with a clock that keeps every time since `restart_clock`."""
-
-    def __init__(self, model: str) -> None:
-        super().__init__(model=model)
-        self.restart_clock()
-
-    def restart_clock(self) -> None:
-        """Forget all times."""
-        self.clock = RecordingClock()
-        self._clock = self.clock
+PEAK_MEMORY: Final = """
+def peak_memory():
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            return next(int(line.split()[1]) / 1024 for line in status if line.startswith("VmHWM"))
+    except (OSError, StopIteration):
+        return None
+"""
+"""For programs that run in a new process: a function of the most memory that the process had, MB of 1,048,576 bytes,
+None where the system does not tell. Its own high-water mark is read: the one of `getrusage` begins at its parent's."""
 
 
 @contextmanager
@@ -92,14 +65,12 @@ def limited_threads(count: int) -> Iterator[None]:
         cv2.setNumThreads(before)
 
 
-def time_calls(
-    call: Callable[[Image], object], frames: Sequence[Image], settings: LatencySettings
-) -> list[float]:
+def time_calls(call: Callable[[Image], object], frames: Sequence[Image], rounds: int) -> list[float]:
     """Milliseconds of `call` on every frame of every round, after the warm-up."""
-    for index in range(settings.warm_up):
+    for index in range(WARM_UP):
         call(frames[index % len(frames)])
     times = []
-    for _ in range(settings.rounds):
+    for _ in range(rounds):
         for frame in frames:
             start = perf_counter()
             call(frame)
@@ -107,18 +78,19 @@ def time_calls(
     return times
 
 
-def time_pipeline(frames: Sequence[Image], model: str, settings: LatencySettings) -> Times:
+def time_pipeline(frames: Sequence[Image], model: str, rounds: int) -> Times:
     """Times of every stage and of whole frames of a stream, and of frames as single pictures."""
-    pipeline = TimedPipeline(model)
+    pipeline = Pipeline(model=model)
     seen = 0
 
     def process(frame: Image) -> None:
         nonlocal seen
-        if seen == settings.warm_up:
-            pipeline.restart_clock()
+        if seen == WARM_UP:
+            pipeline.front.clock = StageClock()
         pipeline.process(frame, seen / DEFAULT_FPS)
         seen += 1
 
-    whole = time_calls(process, frames, settings)
-    single = time_calls(pipeline.recognize, frames, settings)
-    return {**pipeline.clock.times, FRAME: whole, SINGLE: single}
+    whole = time_calls(process, frames, rounds)
+    stages = {name: list(times) for name, times in pipeline.front.clock.stages_ms.items()}
+    single = time_calls(pipeline.recognize, frames, rounds)
+    return {**stages, FRAME: whole, SINGLE: single}

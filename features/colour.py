@@ -6,31 +6,20 @@ out again as the reddest thing in view.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import cv2
 
-from lightgesture.features.image import as_bgr8, check_frame
 from lightgesture.features.profile import ColourProfile
-from lightgesture.features.skin_map import SkinMapSettings, skin_map
+from lightgesture.features.skin_map import skin_map
 from lightgesture.features.types import Image
 
-LONGEST_SIDE = 1024
+WORKING_PIXELS: Final = 160 * 120
+"""Area of the working picture in pixels; a larger one finds no more hands and costs in proportion."""
+LONGEST_SIDE: Final = 1024
 """Pixels of the working picture: of a frame of 1 × 100,000, which no camera gives, less is looked at."""
-
-
-@dataclass(frozen=True, slots=True)
-class ColourSettings:
-    """How the colour map is made.
-
-    working_pixels: area of the working picture in pixels (4,800 to 307,200). 19,200 is 160 × 120;
-        a larger one finds no more hands and costs in proportion.
-    skin: how the default skin map is made.
-    """
-
-    working_pixels: int = 160 * 120
-    skin: SkinMapSettings = field(default_factory=SkinMapSettings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +44,6 @@ class ColourMap:
         """uint8 (h, w), 0 least to 255 most skin-like; made when it is first asked for."""
         return self.skin_of(self.picture)
 
-    @property
-    def detail_scale(self) -> float:
-        """Pixels of `detail` for one of `picture`."""
-        return float(self.detail.shape[1] / self.picture.shape[1])
-
 
 def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:
     """`image` reduced to about `pixels` pixels, aspect kept, and the step before; a smaller one is returned as it is.
@@ -72,14 +56,13 @@ def reduce_picture(image: Image, pixels: int) -> tuple[Image, Image]:
     if ratio >= 1.0 and max(height, width) <= LONGEST_SIDE:
         return image, image
     ratio = min(ratio, 1.0)
-    target = _side(width * ratio), _side(height * ratio)
+    target = (
+        min(max(round(width * ratio), 1), LONGEST_SIDE),
+        min(max(round(height * ratio), 1), LONGEST_SIDE),
+    )
     if ratio < 0.5 or max(height, width) > 2 * LONGEST_SIDE:
         image = cv2.resize(image, (2 * target[0], 2 * target[1]), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
     return cv2.resize(image, target, interpolation=cv2.INTER_AREA), image  # type: ignore[return-value]
-
-
-def _side(length: float) -> int:
-    return min(max(round(length), 1), LONGEST_SIDE)
 
 
 class ColourStage:
@@ -88,26 +71,12 @@ class ColourStage:
     profile: the colours of this diver's hands; None for the default map, on which any skin is bright.
     """
 
-    def __init__(self, settings: ColourSettings | None = None, profile: ColourProfile | None = None) -> None:
-        self.settings = settings or ColourSettings()
-        self.profile = profile
+    def __init__(self, profile: ColourProfile | None = None) -> None:
+        self._skin_of = skin_map if profile is None else profile.map
 
     def process(self, image: Image) -> ColourMap:
-        """Make the colour map of one frame of any size from 1 × 1, BGR or what `as_bgr8` makes of it.
-
-        Raises ValueError, one line, for an array that is no picture.
-        """
-        check_frame(image)
-        if image.ndim == 3:
-            # Alpha goes first: on Arm OpenCV reduces four channels by another rounding than three.
-            image = image[..., :3]
-        # Reduced first: of a huge frame of 16 bits only what is looked at is converted.
-        picture, detail = (as_bgr8(part) for part in reduce_picture(image, self.settings.working_pixels))
+        """Make the colour map of one frame, uint8 (height, width, 3), BGR, of any size from 1 × 1."""
+        picture, detail = reduce_picture(image, WORKING_PIXELS)
         height, width = image.shape[:2]
         scale = width / picture.shape[1], height / picture.shape[0]
-        return ColourMap(picture, detail, scale, (width, height), self._skin)
-
-    def _skin(self, picture: Image) -> Image:
-        if self.profile is not None:
-            return self.profile.map(picture)
-        return skin_map(picture, self.settings.skin)
+        return ColourMap(picture, detail, scale, (width, height), self._skin_of)

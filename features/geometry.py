@@ -1,12 +1,11 @@
 """Arithmetic on boxes; boxes are float or int arrays (n, 4) of x, y, width, height."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.types import Box
 
 
@@ -45,20 +44,13 @@ def keep_distinct(same: NDArray[np.bool_], order: Iterable[int], most: int) -> l
     return kept
 
 
-def best_distinct(boxes: NDArray[Any], scores: NDArray[np.float32], settings: SelectorSettings) -> list[int]:
-    """Numbers of the boxes of the highest scores that do not overlap a better one, the best first."""
-    order = np.argsort(-scores, kind="stable")
-    order = order[scores[order] >= settings.least_score]
-    same = pairwise_iou(boxes, boxes) >= settings.distinct_iou
-    return keep_distinct(same, order, settings.candidates)
-
-
-def scale_box(box: Sequence[float], scale: tuple[float, float], size: tuple[int, int]) -> Box:
-    """A box of the working picture in source pixels, kept inside `size` (width, height)."""
-    x0, y0 = round(box[0] * scale[0]), round(box[1] * scale[1])
-    x1, y1 = round((box[0] + box[2]) * scale[0]), round((box[1] + box[3]) * scale[1])
-    x0, y0 = min(max(x0, 0), size[0] - 1), min(max(y0, 0), size[1] - 1)
-    return x0, y0, max(min(x1, size[0]) - x0, 1), max(min(y1, size[1]) - y0, 1)
+def scale_boxes(boxes: NDArray[Any], scale: tuple[float, float], size: tuple[int, int]) -> list[Box]:
+    """Boxes of the working picture, (n, 4), in source pixels, kept inside `size` (width, height)."""
+    boxes = boxes.astype(np.float64)
+    low = np.rint(boxes[:, :2] * scale).clip(0, np.array(size) - 1)
+    high = np.rint((boxes[:, :2] + boxes[:, 2:]) * scale).clip(None, size)
+    sides = np.maximum(high - low, 1.0)
+    return list(zip(*low.T.astype(int).tolist(), *sides.T.astype(int).tolist(), strict=True))
 
 
 def mirror_box(box: Box, width: int) -> Box:

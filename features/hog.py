@@ -18,23 +18,21 @@ Float = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class HogSettings:
-    """What is counted.
-
-    rim: pixels left out along each side of the patch: a hand's box leaves little of a hand there.
-    cell: side of a cell in pixels, 3 to 16; it must divide what is left of the patch's side.
-    bins: directions between 0 and 180° (0 and 360° if `signed`), 4 to 18.
-    signed: tell dark-to-bright from bright-to-dark. Without it a hand reads the same before a dark wall and
-        before a bright window.
-    clip: largest share of one entry in its block's norm, 0.1 to 1 (Lowe's 0.2).
-    floor: added to a block's norm, in units of the compressed picture (0 to 1); below it a block is noise.
-    """
+    """What is counted."""
 
     rim: int = 2
+    """Pixels left out along each side of the patch: a hand's box leaves little of a hand there."""
     cell: int = 4
+    """Side of a cell in pixels, 3 to 16; it must divide what is left of the patch's side."""
     bins: int = 8
+    """Directions between 0 and 180° (0 and 360° if `signed`), 4 to 18."""
     signed: bool = False
+    """Tell dark-to-bright from bright-to-dark. Without it a hand reads the same before a dark wall and before a bright
+    window."""
     clip: float = 0.2
+    """Largest share of one entry in its block's norm, 0.1 to 1 (Lowe's 0.2)."""
     floor: float = 0.1
+    """Added to a block's norm, in units of the compressed picture (0 to 1); below it a block is noise."""
 
 
 def hog_length(size: int, settings: HogSettings | None = None) -> int:

@@ -10,18 +10,19 @@ from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image
 
+Square = tuple[int, int, int]
+"""Left, upper edge and side in whole pixels of a picture; may reach out of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class PatchSettings:
-    """How a patch is cut.
-
-    size: side of the patch in pixels, 16 to 128; the cost of the features grows with its square.
-    context: side of the square over the longer side of the hand's box, 0.8 to 2. Smaller loses finger tips
-        when a box is too small, larger gives the room behind the hand more say.
-    """
+    """How a patch is cut."""
 
     size: int = 32
+    """Side of the patch in pixels, 16 to 128; the cost of the features grows with its square."""
     context: float = 1.1
+    """Side of the square over the longer side of the hand's box, 0.8 to 2. Smaller loses finger tips when a box is too
+    small, larger gives the room behind the hand more say."""
 
 
 def as_bgr(image: NDArray[Any]) -> Image:
@@ -61,48 +62,61 @@ def cut_patches(
 ) -> NDArray[np.uint8]:
     """Patches of several hands of one picture, uint8 (n, size, size, 3); see `cut_patch`."""
     settings = settings or PatchSettings()
-    if len(boxes) != len(sides):
-        raise ValueError(f"{len(boxes)} boxes but {len(sides)} sides; give one side for each box")
     picture = as_bgr(image)
-    patches = np.empty((len(boxes), settings.size, settings.size, 3), np.uint8)
-    for patch, box, side in zip(patches, boxes, sides, strict=True):
-        if side not in ("left", "right"):
-            raise ValueError(f'side is {side!r}; it must be "left" or "right"')
-        _resize(_cut_square(picture, box, settings.context), patch)
+    _check(boxes, sides, (picture.shape[1], picture.shape[0]))
+    size = settings.size
+    squares = squares_round(np.array(boxes).reshape(-1, 4), settings.context)
+    patches = np.empty((len(boxes), size, size, 3), np.uint8)
+    for patch, square, side in zip(patches, cut_squares(picture, squares), sides, strict=True):
+        # Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
+        # is sampled at twice the size first: averaging all its pixels takes three to four times as long, for nothing.
+        if len(square) > 2 * size:
+            square = cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
+        method = cv2.INTER_AREA if len(square) >= size else cv2.INTER_LINEAR
+        cv2.resize(square, (size, size), patch, interpolation=method)
         if side == "right":
             cv2.flip(patch, 1, patch)
     return patches
 
 
-def _resize(square: Image, patch: Image) -> None:
-    """Write the square picture into the patch, at its size.
+def _check(boxes: Sequence[Box], sides: Sequence[str], picture: tuple[int, int]) -> None:
+    """Refuse boxes and sides that are none of hands in a picture of (width, height). Raises ValueError."""
+    if len(boxes) != len(sides):
+        raise ValueError(f"{len(boxes)} boxes but {len(sides)} sides; give one side for each box")
+    for (x, y, width, height), side in zip(boxes, sides, strict=True):
+        if side not in ("left", "right"):
+            raise ValueError(f'side is {side!r}; it must be "left" or "right"')
+        if not (width > 0 and height > 0):
+            raise ValueError(f"box {(x, y, width, height)} has no area; give x, y, width, height in pixels")
+        if x >= picture[0] or y >= picture[1] or x + width <= 0 or y + height <= 0:
+            raise ValueError(
+                f"box {(x, y, width, height)} lies outside the picture of {picture[0]} × {picture[1]} pixels"
+            )
 
-    Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
-    is sampled at twice the size first: averaging all its pixels takes three to four times as long and reads no better.
-    """
-    size = len(patch)
-    if square.shape[0] > 2 * size:
-        square = np.asarray(
-            cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR), np.uint8
-        )
-    method = cv2.INTER_AREA if square.shape[0] >= size else cv2.INTER_LINEAR
-    cv2.resize(square, (size, size), patch, interpolation=method)
+
+def squares_round(
+    boxes: NDArray[Any], context: float, least: float = 1.0, most: float = np.inf
+) -> list[Square]:
+    """Squares about the middles of boxes, (n, 4), x, y, width, height: `context` times the longer side, but at least
+    `least` and at most `most` pixels wide, rounded to whole ones, never below 1."""
+    x, y, width, height = boxes.astype(np.float64).T
+    side = np.maximum(np.rint((context * np.maximum(width, height)).clip(least, most)), 1.0)
+    places = np.rint([x + (width - side) / 2, y + (height - side) / 2, side])
+    return list(zip(*places.astype(np.int64).tolist(), strict=True))
 
 
-def _cut_square(image: Image, box: Box, context: float) -> Image:
-    """The square of `context` times the longer side of `box` about its centre, edge pixels repeated outside."""
-    x, y, width, height = box
-    rows, columns = image.shape[:2]
-    if not (width > 0 and height > 0):
-        raise ValueError(f"box {tuple(box)} has no area; give x, y, width, height in pixels")
-    if x >= columns or y >= rows or x + width <= 0 or y + height <= 0:
-        raise ValueError(f"box {tuple(box)} lies outside the picture of {columns} × {rows} pixels")
-    side = max(1, round(context * max(width, height)))
-    left, top = round(x + (width - side) / 2), round(y + (height - side) / 2)
-    inside = image[max(top, 0) : max(top + side, 0), max(left, 0) : max(left + side, 0)]
-    before = max(-top, 0), max(-left, 0)
-    after = max(top + side - rows, 0), max(left + side - columns, 0)
-    if any(before) or any(after):
-        padded = cv2.copyMakeBorder(inside, before[0], after[0], before[1], after[1], cv2.BORDER_REPLICATE)
-        return np.asarray(padded, np.uint8)
-    return inside
+def cut_squares(picture: Image, squares: Sequence[Square]) -> list[Image]:
+    """The squares of a picture, uint8 (side, side, 3) each; what lies outside repeats its edge."""
+    height, width = picture.shape[:2]
+    cuts = []
+    for left, top, side in squares:
+        x0, y0 = min(max(left, 0), width - 1), min(max(top, 0), height - 1)
+        x1, y1 = max(min(left + side, width), x0 + 1), max(min(top + side, height), y0 + 1)
+        cut = picture[y0:y1, x0:x1]
+        margins = y0 - top, top + side - y1, x0 - left, left + side - x1
+        if any(margins):
+            # Of a square wholly beside the picture a margin is negative.
+            above, below, before, after = np.maximum(margins, 0).tolist()
+            cut = cv2.copyMakeBorder(cut, above, below, before, after, cv2.BORDER_REPLICATE)  # type: ignore[assignment]
+        cuts.append(cut)
+    return cuts

@@ -70,7 +70,7 @@ def colour_cells(picture: Image, bins: int, reach: float) -> NDArray[np.intp]:
 
 
 def save_profile(path: Path, profile: ColourProfile) -> None:
-    """Write the file under a temporary name, then rename it. Raises OSError."""
+    """Write the file. Raises OSError."""
     content = {
         "format": FORMAT,
         "kind": profile.kind,
@@ -80,9 +80,7 @@ def save_profile(path: Path, profile: ColourProfile) -> None:
         "bins": len(profile.levels),
         "levels": profile.levels.ravel().tolist(),
     }
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_text(json.dumps(content) + "\n", encoding="utf-8")
-    os.replace(temporary, path)
+    path.write_text(json.dumps(content) + "\n", encoding="utf-8")
 
 
 def load_profile(path: str | os.PathLike[str]) -> ColourProfile:

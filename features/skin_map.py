@@ -5,75 +5,90 @@ operations of OpenCV, and a test holds the two together.
 """
 
 import math
-from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.normalise import DARKEST_LIGHT, compensate_red, gray_world
 from lightgesture.features.types import Image
 
 Float = NDArray[np.float32]
 
-
-@dataclass(frozen=True, slots=True)
-class SkinMapSettings:
-    """How the skin map is made.
-
-    red_compensation: share of the missing red that is given back, 0 to 1 (Ancuti's alpha).
-    exponent: power that stands in for the lightness curve of CIELAB, 0.3 to 1; 0.73 was fitted to a*.
-    yellow_weight: weight of the green-blue opponent beside the red-green one, 0 to 1.
-    low_percentile, high_percentile: percent of pixels below and above the range that the levels
-        share; a smaller high percentile lets a large red object use up the range.
-    bins: of the histogram from which the fast version reads the percentiles, 256 to 65,535; with 2,048 both
-        versions differ by a level, by two in pictures with a few glowing pixels.
-    """
-
-    red_compensation: float = 1.0
-    exponent: float = 0.73
-    yellow_weight: float = 0.15
-    low_percentile: float = 20.0
-    high_percentile: float = 99.8
-    bins: int = 2048
-
+RED_COMPENSATION: Final = 1.0
+"""Share of the missing red that is given back, 0 to 1 (Ancuti's alpha)."""
+EXPONENT: Final = 0.73
+"""Power that stands in for the lightness curve of CIELAB, fitted to a*."""
+YELLOW_WEIGHT: Final = 0.15
+"""Weight of the green-blue opponent beside the red-green one, 0 to 1."""
+LOW_PERCENTILE: Final = 20.0
+"""Percent of pixels below the range that the levels share."""
+HIGH_PERCENTILE: Final = 99.8
+"""Percent of pixels up to its end; a smaller one lets a large red object use up the range."""
+BINS: Final = 2048
+"""Of the histogram from which the fast version reads the percentiles; both versions then differ by a level, by two in
+pictures with a few glowing pixels."""
+DARKEST_LIGHT: Final = 1e-3
+"""An estimate of the light below this counts as this, so that a black channel is not divided by zero."""
 
 _LEVELS = np.arange(256, dtype=np.float32) / np.float32(255)
 
-FLAT = 1e-4
+FLAT: Final = 1e-4
 """A map whose percentiles lie closer together than this holds nothing but noise and is given as zeros."""
 
 
-def redness(bgr: Float, exponent: float, yellow_weight: float) -> Float:
+def compensate_red(bgr: Float) -> Float:
+    """Give the red channel back what the water took, led by the green channel.
+
+    Ancuti, Ancuti, De Vleeschouwer and Bekaert, "Color Balance and Fusion for Underwater Image
+    Enhancement", IEEE Transactions on Image Processing 27(1), 2018, equation 4:
+    I_rc = I_r + alpha (mean(I_g) - mean(I_r)) (1 - I_r) I_g, channels in 0 to 1.
+    """
+    green, red = bgr[..., 1], bgr[..., 2]
+    missing = max(float(green.mean()) - float(red.mean()), 0.0)
+    compensated = bgr.copy()
+    compensated[..., 2] = red + RED_COMPENSATION * missing * (1.0 - red) * green
+    return compensated
+
+
+def gray_world(bgr: Float) -> Float:
+    """Divide each channel by its mean, the mean of the three kept; values are clipped to 1.
+
+    Buchsbaum, "A spatial processor model for object colour perception", Journal of the Franklin Institute
+    310(1), 1980: the average of a scene is grey. So the mean is the colour of the light (von Kries).
+    """
+    light = bgr.reshape(-1, 3).mean(axis=0)
+    return np.asarray(np.minimum(bgr * (light.mean() / np.maximum(light, DARKEST_LIGHT)), 1.0), np.float32)
+
+
+def redness(bgr: Float) -> Float:
     """Opponent colour R^e - G^e + w (G^e - B^e): a stand-in for a* + 0.3 b* without CIELAB."""
-    blue, green, red = np.moveaxis(np.power(bgr, exponent), -1, 0)
-    return np.asarray((red - green) + yellow_weight * (green - blue), np.float32)
+    blue, green, red = np.moveaxis(np.power(bgr, EXPONENT), -1, 0)
+    return np.asarray((red - green) + YELLOW_WEIGHT * (green - blue), np.float32)
 
 
-def stretch(values: Float, low_percentile: float, high_percentile: float) -> Image:
-    """Map the range between two percentiles to 0 to 255; a constant map gives zeros."""
-    low, high = np.percentile(values, [low_percentile, high_percentile])
+def stretch(values: Float) -> Image:
+    """Map the range between the two percentiles to 0 to 255; a constant map gives zeros."""
+    low, high = np.percentile(values, [LOW_PERCENTILE, HIGH_PERCENTILE])
     if high - low < FLAT:
         return np.zeros(values.shape, np.uint8)
     return np.asarray(np.clip((values - low) * (255.0 / (high - low)), 0, 255), np.uint8)
 
 
-def reference_skin_map(picture: Image, settings: SkinMapSettings) -> Image:
+def reference_skin_map(picture: Image) -> Image:
     """What `skin_map` computes, written out: uint8 (h, w, 3) BGR -> uint8 (h, w), 255 most skin-like."""
     bgr = picture.astype(np.float32) * np.float32(1 / 255)
-    bgr = gray_world(compensate_red(bgr, settings.red_compensation))
-    opponent = redness(bgr, settings.exponent, settings.yellow_weight)
-    opponent = np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32)
-    return stretch(opponent, settings.low_percentile, settings.high_percentile)
+    opponent = redness(gray_world(compensate_red(bgr)))
+    return stretch(np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32))
 
 
-def skin_map(picture: Image, settings: SkinMapSettings) -> Image:
+def skin_map(picture: Image) -> Image:
     """Skin map of a BGR picture, uint8 (h, w, 3) -> uint8 (h, w), 0 least to 255 most skin-like."""
-    opponent = cv2.GaussianBlur(_fast_redness(picture, settings), (3, 3), 0)
-    return _fast_stretch(np.asarray(opponent, np.float32), settings)
+    opponent = cv2.GaussianBlur(_fast_redness(picture), (3, 3), 0)
+    return _fast_stretch(np.asarray(opponent, np.float32))
 
 
-def _fast_redness(picture: Image, settings: SkinMapSettings) -> Float:
+def _fast_redness(picture: Image) -> Float:
     """`redness` of the balanced picture, float32 (h, w).
 
     Balancing scales a channel and the power follows it, so blue and green are one table of 256 entries each. The
@@ -81,29 +96,28 @@ def _fast_redness(picture: Image, settings: SkinMapSettings) -> Float:
     """
     blue, green, red = cv2.split(picture)
     mean_blue, mean_green, mean_red = (mean / 255.0 for mean in cv2.mean(picture)[:3])
-    share = settings.red_compensation * max(mean_green - mean_red, 0.0)
+    share = RED_COMPENSATION * max(mean_green - mean_red, 0.0)
     compensated = cv2.multiply(cv2.bitwise_not(red), green, scale=share / 255.0**2, dtype=cv2.CV_32F)
     compensated = cv2.addWeighted(red, 1 / 255.0, compensated, 1.0, 0.0, dtype=cv2.CV_32F)
     light = np.array([mean_blue, mean_green, cv2.mean(compensated)[0]])
     gains = light.mean() / np.maximum(light, DARKEST_LIGHT)
-    tables = _power_tables(gains[:2], settings)
+    tables = _power_tables(gains[:2])
     cool = cv2.add(cv2.LUT(blue, tables[0]), cv2.LUT(green, tables[1]))
     clipped = cv2.threshold(compensated, 1.0 / max(gains[2], DARKEST_LIGHT), 0, cv2.THRESH_TRUNC)[1]
-    warm = cv2.pow(clipped, settings.exponent)
-    return np.asarray(cv2.scaleAdd(warm, gains[2] ** settings.exponent, cool), np.float32)
+    warm = cv2.pow(clipped, EXPONENT)
+    return np.asarray(cv2.scaleAdd(warm, gains[2] ** EXPONENT, cool), np.float32)
 
 
-def _power_tables(gains: NDArray[np.float64], settings: SkinMapSettings) -> Float:
+def _power_tables(gains: NDArray[np.float64]) -> Float:
     """float32 (2, 256): what each value of blue and of green adds to the redness."""
-    values = np.minimum(_LEVELS * gains[:, None].astype(np.float32), 1.0) ** np.float32(settings.exponent)
-    weights = np.array([[-settings.yellow_weight], [settings.yellow_weight - 1.0]], np.float32)
+    values = np.minimum(_LEVELS * gains[:, None].astype(np.float32), 1.0) ** np.float32(EXPONENT)
+    weights = np.array([[-YELLOW_WEIGHT], [YELLOW_WEIGHT - 1.0]], np.float32)
     return np.asarray(values * weights, np.float32)
 
 
-def _fast_stretch(values: Float, settings: SkinMapSettings) -> Image:
+def _fast_stretch(values: Float) -> Image:
     """`stretch` with percentiles from a histogram."""
-    percents = settings.low_percentile, settings.high_percentile
-    low, high = histogram_percentiles(values, percents, settings.bins)
+    low, high = histogram_percentiles(values, (LOW_PERCENTILE, HIGH_PERCENTILE), BINS)
     if high - low < FLAT:
         return np.zeros(values.shape, np.uint8)
     scale = 255.0 / (high - low)

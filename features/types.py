@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +27,7 @@ class HandRegion:
     confidence: 0 to 1, how sure the selector is that this is a hand.
     alternatives: other extents of the same region, best first: with or without the forearm, at another level
         of the skin map. Whoever reads the hand may find that one of them fits better.
+    certainty: how sure the side is, 0 to 1; a factor on the confidence of what is read.
     """
 
     box: Box
@@ -35,14 +35,12 @@ class HandRegion:
     side: Side | None
     confidence: float
     alternatives: tuple[Box, ...] = ()
+    certainty: float = 1.0
 
     @property
-    def mask(self) -> NDArray[np.bool_]:
-        """bool (box height, box width), True inside the outline; drawn at each call."""
-        x, y, width, height = self.box
-        mask = np.zeros((height, width), np.uint8)
-        cv2.drawContours(mask, [self.contour.reshape(-1, 1, 2)], -1, 1, cv2.FILLED, offset=(-x, -y))
-        return mask.astype(bool)
+    def number(self) -> None:
+        """A region on its own is of no track."""
+        return None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,27 +63,3 @@ class Candidates:
     def axis(self) -> float | None:
         """x of the axis of the diver's body, source pixels; None where no face is seen."""
         return None if self.face is None else self.face[0]
-
-
-@dataclass(frozen=True, slots=True)
-class Track:
-    """One hand followed through the frames.
-
-    number: grows by one at each birth, never used twice in a stream.
-    side: the diver's own side, kept for the life of the track; only a guess is put right.
-    box: position and size, source pixels: the region's own where it was seen, predicted where not.
-    confidence: the selector's confidence in the region that last updated the track, 0 to 1.
-    missed: frames since the last matching region, 0 when seen now. Where it is above 0 there may be anything in the
-        box, and no hand may be read from it.
-    alternatives: those of the region that was seen now, else none.
-    certainty: 0 to 1, how sure the side is: 1 where both hands were seen together, less for a lone hand. A factor
-        on the confidence of what is read.
-    """
-
-    number: int
-    side: Side
-    box: Box
-    confidence: float
-    missed: int
-    alternatives: tuple[Box, ...] = ()
-    certainty: float = 1.0

@@ -14,11 +14,14 @@ Float = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class VectorSettings:
-    """patch, hog, contour: how each part is made."""
+    """How each part is made; a model's file says it in full."""
 
     patch: PatchSettings = field(default_factory=PatchSettings)
+    """How the patch is cut."""
     hog: HogSettings = field(default_factory=HogSettings)
+    """How its gradients are counted."""
     contour: ContourSettings = field(default_factory=ContourSettings)
+    """How the hand's outline is found and measured."""
 
 
 def block_lengths(settings: VectorSettings) -> tuple[int, int]:

@@ -2,10 +2,12 @@
 
 from lightgesture.fsm.decoder import Decoder
 from lightgesture.fsm.events import Event, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.grammar import Defect, Grammar, GrammarError
-from lightgesture.fsm.load import inspect_grammar, load_grammar
+from lightgesture.fsm.language.grammar import Defect, Grammar, GrammarError
+from lightgesture.fsm.language.load import inspect_grammar, load_grammar
+from lightgesture.fsm.signs import UNSEEN, Pair, Shown, Sign, Signs
 
 __all__ = [
+    "UNSEEN",
     "Decoder",
     "Defect",
     "Event",
@@ -13,7 +15,11 @@ __all__ = [
     "GrammarError",
     "Instruction",
     "Notice",
+    "Pair",
     "Rejected",
+    "Shown",
+    "Sign",
+    "Signs",
     "State",
     "Word",
     "inspect_grammar",

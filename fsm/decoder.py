@@ -1,16 +1,18 @@
-"""Pairs, one a frame, become words, and words become instructions."""
+"""Signs, a pair a frame, become words, and words become instructions."""
 
-from lightgesture.fsm.dwell import make_dwell
+from typing import Self
+
 from lightgesture.fsm.events import Event, Growth
-from lightgesture.fsm.grammar import Grammar
+from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.reader import Reader
-from lightgesture.fsm.reporter import DISPLAY_INTERVAL_S, Reporter, shorten
-from lightgesture.fsm.timeline import Timeline
-from lightgesture.fsm.unread import UnreadSigning
+from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter, Timeline
+from lightgesture.fsm.rules.dwell import make_dwell
+from lightgesture.fsm.rules.unread import UnreadSigning
+from lightgesture.fsm.signs import Signs
 
 
 class Decoder:
-    """Reads one pair of tokens a frame; what it makes of them are events.
+    """Reads the signs of one frame after the other; what it makes of them are events.
 
     An instruction is issued only for a sentence that the grammar's table accepts from its start word to
     its end word. A held pair that is no word is reported and the sentence kept; a word that has no place
@@ -22,8 +24,6 @@ class Decoder:
     events. ValueError: a hold out of range, or both.
     """
 
-    __slots__ = ("_count_hidden", "_dwell", "_reader", "_reporter", "_timeline", "_timeout_s", "_unread")
-
     def __init__(
         self,
         grammar: Grammar,
@@ -32,6 +32,7 @@ class Decoder:
         hold_seconds: float | None = None,
         source: str | None = None,
     ) -> None:
+        self.grammar = grammar
         self._dwell = make_dwell(grammar.dwell, hold, hold_seconds)
         self._unread = UnreadSigning(
             grammar.dwell.unread * self._dwell.need, self._dwell.release, grammar.dwell.passage_s
@@ -67,22 +68,15 @@ class Decoder:
         """What may follow, for the diver: "GO or a digit"."""
         return self._reader.expected
 
-    def step(
-        self,
-        left: str | None,
-        right: str | None,
-        time_s: float,
-        left_confidence: float = 1.0,
-        right_confidence: float = 1.0,
-        frame: int | None = None,
-        left_seen: bool | None = None,
-        right_seen: bool | None = None,
-    ) -> list[Event]:
-        """Take in one frame: the tokens of the diver's hands (None: no token) and the time stamp, seconds.
+    def for_stream(self, source: str | None) -> Self:
+        """Another decoder of the same grammar and hold, for another stream."""
+        return type(self)(self.grammar, hold=self.hold_frames, hold_seconds=self.hold_seconds, source=source)
 
-        Confidences: 0 to 1; the lower of the two is the pair's. frame: 0-based index; None: one more
-        than the last. left_seen, right_seen: whether the hand is in view, read or not; None: where it has a
-        token. Stamps that stand still, run back or are not finite are endured: no time passes.
+    def step(self, signs: Signs, time_s: float, frame: int | None = None) -> list[Event]:
+        """Take in one frame: what both hands show and the time stamp, seconds.
+
+        frame: 0-based index; None: one more than the last. Stamps that stand still, run back or are not finite are
+        endured: no time passes.
         """
         events: list[Event] = []
         reporter, dwell, timeline = self._reporter, self._dwell, self._timeline
@@ -96,16 +90,13 @@ class Decoder:
             dwell.discard()
             self._reader.drop("timeout", f"no word for {self._timeout_s:g} s")
             sentence = None
-        pair = None if left is None or right is None else (left, right)
-        confidence = left_confidence if left_confidence < right_confidence else right_confidence
-        hold = dwell.process(pair, confidence, reporter.frame, timeline.time_s, now_s)
+        shown = signs.shown
+        hold = dwell.process(shown, signs.confidence, reporter.frame, timeline.time_s, now_s)
         if hold is not None:
             self._reader.read(hold)
-        elif sentence is not None and (pair is None or pair != dwell.spent):
-            is_left = left is not None if left_seen is None else left_seen
-            is_right = right is not None if right_seen is None else right_seen
-            is_counted = is_left or is_right or self._count_hidden
-            if is_counted and self._unread.process(pair, dwell.step, now_s - before_s):
+        elif sentence is not None and (shown is None or shown != dwell.spent):
+            is_counted = signs.left.seen or signs.right.seen or self._count_hidden
+            if is_counted and self._unread.process(shown, dwell.step, now_s - before_s):
                 self._miss()
         is_worth_showing = dwell.pair is not None or reporter.is_growth_shown
         if is_worth_showing and now_s - reporter.shown_s >= DISPLAY_INTERVAL_S:
@@ -132,6 +123,6 @@ class Decoder:
         reader, pair = self._reader, self._dwell.pair
         growth: Growth | None = None
         if pair is not None:
-            progress = shorten(self._dwell.progress)
-            growth = Growth(pair=pair, word=reader.words.get(pair), progress=progress)
+            progress = round(self._dwell.progress, DECIMALS)
+            growth = Growth(pair=pair, word=reader.word_of(pair), progress=progress)
         reader.show(growth)

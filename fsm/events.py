@@ -1,15 +1,13 @@
 """What the decoder says: frozen records, one class per `type`, keys in the documented order.
 
 Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame
-and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own.
+and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own, or the word of one card.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-Pair = tuple[str, str]
-"""Tokens of the diver's left and right hand."""
+from lightgesture.fsm.signs import Shown
 
 
 def _plain(value: Any) -> Any:
@@ -22,33 +20,16 @@ def _record(event: Any) -> dict[str, Any]:
     return {item.name: _plain(getattr(event, item.name)) for item in fields(event)}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Growth:
     """A hold that is growing: `word` is what it would be read as (None: no word), `progress` 0 to 1."""
 
-    pair: Pair
+    pair: Shown
     word: str | None
     progress: float
 
-    def __init__(self, *, pair: Pair, word: str | None, progress: float) -> None:
-        _set_growth[0](self, pair)
-        _set_growth[1](self, word)
-        _set_growth[2](self, progress)
-
     def to_dict(self) -> dict[str, Any]:
         return _record(self)
-
-
-def _setters(record: type) -> tuple[Callable[[Any, Any], None], ...]:
-    """What sets the fields of a frozen, slotted record, in order.
-
-    Those that a dataclass makes look each field up by its name. Records for displays are made in the midst of a hold,
-    several a second, and take half as long this way.
-    """
-    return tuple(getattr(record, item.name).__set__ for item in fields(record))
-
-
-_set_growth = _setters(Growth)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,7 +44,7 @@ class Word:
     source: str | None
     frame: int
     time_s: float
-    pair: Pair
+    pair: Shown
     word: str
     state: str
     confidence: float
@@ -128,7 +109,7 @@ class Rejected:
         return _record(self)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, init=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class State:
     """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
 
@@ -143,30 +124,8 @@ class State:
     sentence: str
     dwell: Growth | None
 
-    def __init__(
-        self,
-        *,
-        source: str | None,
-        frame: int,
-        time_s: float,
-        state: str,
-        sentence: str,
-        dwell: Growth | None,
-    ) -> None:
-        set_type, set_source, set_frame, set_time, set_state, set_sentence, set_dwell = _set_state
-        set_type(self, "state")
-        set_source(self, source)
-        set_frame(self, frame)
-        set_time(self, time_s)
-        set_state(self, state)
-        set_sentence(self, sentence)
-        set_dwell(self, dwell)
-
     def to_dict(self) -> dict[str, Any]:
         return _record(self)
-
-
-_set_state = _setters(State)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

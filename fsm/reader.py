@@ -1,14 +1,14 @@
 """What held signs do to the sentence that is being signed."""
 
-from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.events import Growth, Pair
-from lightgesture.fsm.forms import MENU, Form, Item, spell
-from lightgesture.fsm.grammar import Grammar
-from lightgesture.fsm.reporter import Reporter
+from lightgesture.fsm.events import Growth
+from lightgesture.fsm.language.forms import MENU, Form, Item, spell
+from lightgesture.fsm.language.grammar import Grammar
+from lightgesture.fsm.language.table import Arguments, bind
+from lightgesture.fsm.reporter import Reporter, Timeline
+from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.sentence import Sentence, name_expected, needs_confirmation, objection
-from lightgesture.fsm.table import Arguments, bind
-from lightgesture.fsm.timeline import Timeline
-from lightgesture.fsm.unread import UnreadSigning
+from lightgesture.fsm.signs import Shown
 
 IDLE = "idle"
 COLLECTING = "collecting"
@@ -21,8 +21,6 @@ class Reader:
     sentence: the open one, or None. words: what each pair says at this point. unread: is told when a sign was read, or
     was no word.
     """
-
-    __slots__ = ("_grammar", "_reporter", "_timeline", "_unread", "sentence", "words")
 
     def __init__(
         self, grammar: Grammar, reporter: Reporter, timeline: Timeline, unread: UnreadSigning
@@ -57,7 +55,7 @@ class Reader:
 
     def read(self, hold: Hold) -> None:
         """A pair was held long enough."""
-        word = self.words.get(hold.pair)
+        word = self.word_of(hold.pair)
         sentence, control = self.sentence, self._grammar.control
         if word is None:
             self._report_unknown(hold.pair)
@@ -72,13 +70,19 @@ class Reader:
         else:
             self._continue(hold, word, sentence)
 
-    def _report_unknown(self, pair: Pair) -> None:
+    def word_of(self, shown: Shown) -> str | None:
+        """What is said at this point by a pair, or by a word that says itself; None: nothing."""
+        if len(shown) == 2:
+            return self.words.get((shown[0], shown[1]))
+        return shown[0] if shown[0] in self._grammar.vocabulary.words else None
+
+    def _report_unknown(self, pair: Shown) -> None:
         self._unread.pass_over()
         if self.sentence is not None:
             self.sentence.has_unknown = True
         inside = self.sentence is not None and pair in self._grammar.idle_words
         place = "no word inside a sentence" if inside else "no word"
-        self._reporter.notice("unknown_pair", f"{pair[0]},{pair[1]} is {place}; repeat it")
+        self._reporter.notice("unknown_pair", f"{','.join(pair)} is {place}; repeat it")
 
     def _open(self, hold: Hold, word: str) -> None:
         """A word while no sentence is open."""

@@ -1,13 +1,12 @@
-"""The events of a frame as they are made, and the pace of those that are for displays."""
+"""The events of a frame as they are made, their time, and the pace of those that are for displays."""
 
 import math
 
-from lightgesture.fsm.dwell import Hold
 from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
-from lightgesture.fsm.forms import Form
+from lightgesture.fsm.language.forms import Form
+from lightgesture.fsm.language.table import Arguments
+from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.sentence import Sentence
-from lightgesture.fsm.table import Arguments
-from lightgesture.fsm.timeline import Timeline
 
 DISPLAY_INTERVAL_S = 0.2
 """Shortest time between two `state` records while a hold grows, seconds: five a second."""
@@ -15,18 +14,32 @@ DISPLAY_INTERVAL_S = 0.2
 DECIMALS = 4
 """Decimals of confidences and progress in the events."""
 
-_SCALE = 10.0**DECIMALS
 
+class Timeline:
+    """Seconds that never run back, whatever stamps come in: a loop or a reset of the source adds nothing.
 
-def shorten(share: float) -> float:
-    """The share, 0 to 1, with `DECIMALS` decimals: what `round` does, in half the time, and a tie goes up."""
-    return int(share * _SCALE + 0.5) / _SCALE if 0.0 <= share <= 1.0 else round(share, DECIMALS)
+    now_s: the time so far. time_s: the last stamp that was finite.
+    """
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+        self.time_s = 0.0
+        self._offset_s = 0.0
+
+    def advance(self, time_s: float) -> float:
+        """The time after a frame stamped `time_s`: stands still where a stamp runs back or is not finite."""
+        now_s = time_s + self._offset_s
+        if self.now_s <= now_s < math.inf:  # never true of a stamp that is no number
+            self.now_s = now_s
+            self.time_s = time_s
+        elif math.isfinite(time_s):
+            self._offset_s = self.now_s - time_s
+            self.time_s = time_s
+        return self.now_s
 
 
 class Reporter:
     """Collects the events of one frame. source: name of the input. timeline: has the time stamp, frame the number."""
-
-    __slots__ = ("_source", "_timeline", "events", "frame", "is_growth_shown", "shown_s")
 
     def __init__(self, source: str | None, timeline: Timeline) -> None:
         self._source = source
@@ -47,7 +60,7 @@ class Reporter:
                 pair=hold.pair,
                 word=word,
                 state=state,
-                confidence=shorten(hold.confidence),
+                confidence=round(hold.confidence, DECIMALS),
             )
         )
 
@@ -67,7 +80,7 @@ class Reporter:
                 program=arguments.program,
                 parameter=arguments.parameter,
                 change=arguments.change,
-                confidence=shorten(sentence.confidence),
+                confidence=round(sentence.confidence, DECIMALS),
                 words=tuple(sentence.words),
             )
         )

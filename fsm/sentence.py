@@ -3,11 +3,11 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from lightgesture.fsm.dwell import Hold
-from lightgesture.fsm.forms import Form, is_digit, split_carrier
-from lightgesture.fsm.grammar import Grammar
-from lightgesture.fsm.settings import Control
-from lightgesture.fsm.table import Arguments
+from lightgesture.fsm.language.forms import Form, is_digit, split_carrier
+from lightgesture.fsm.language.grammar import Grammar
+from lightgesture.fsm.language.settings import Control
+from lightgesture.fsm.language.table import Arguments
+from lightgesture.fsm.rules.dwell import Hold
 
 
 @dataclass(slots=True, kw_only=True)

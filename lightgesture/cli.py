@@ -30,12 +30,29 @@ COMMANDS = {
         "score the models and the whole chain on labelled pictures or rendered dives",
     ),
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
+    "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
 }
 """Name of a command to its module and its line of help.
 
 By their paths, so that the application imports none of the rooms that are built on it.
 """
+
+
+EXTRAS = {
+    "lightgesture.training": "train",
+    "lightgesture.synth": "train",
+    "lightgesture.benchmarks": "train",
+    "torch": "train",
+    "matplotlib": "plots",
+    "dask": "cluster",
+    "distributed": "cluster",
+    "rosbags": "bag",
+    "pymavlink": "mavlink",
+    "serial": "mavlink",
+    "av": "av",
+}
+"""Package that a command may lack, a later room or another's, to the extra that brings it."""
 
 
 class Command(Protocol):
@@ -78,12 +95,24 @@ def exit_status(work: Callable[[], int], interrupted: str) -> int:
     except UsageError as error:
         say(str(error))
         return ExitStatus.USAGE
+    except ModuleNotFoundError as error:
+        say(_explain_missing(error))
+        return ExitStatus.USAGE
     except KeyboardInterrupt:
         say(f"interrupted; {interrupted}")
         return ExitStatus.INTERRUPTED
     except (ReaderGoneError, BrokenPipeError):
         drop_output()
         return ExitStatus.SOME_FAILED
+
+
+def _explain_missing(error: ModuleNotFoundError) -> str:
+    """Which extra brings the package that is not there; one that no extra brings is a defect, and raised again."""
+    name = error.name or ""
+    for package, extra in EXTRAS.items():
+        if name == package or name.startswith(f"{package}."):
+            return f"{package} is needed and not installed; pip install 'lightgesture[{extra}]'"
+    raise error
 
 
 def _run(argv: list[str]) -> int:

@@ -1,16 +1,15 @@
-"""Standard output and standard error of the command line, and the progress bar."""
+"""Standard output and standard error of the command line, and progress bars."""
 
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from types import TracebackType
 from typing import IO, Any, Self
 
 from lightgesture.errors import UsageError
 
 MAX_LABEL = 30
-"""Longest label of one of several progress bars, letters."""
+"""Longest label of a progress bar, letters."""
 
 
 class ReaderGoneError(Exception):
@@ -53,49 +52,6 @@ def print_line(text: str) -> None:
         ) from error
 
 
-class Progress:
-    """A progress bar on standard error, where that is a terminal and the user wants one.
-
-    Lines of results go through its `print_line` and messages through its `say`: they keep clear of the bar.
-    """
-
-    def __init__(self, label: str, total: int | None, unit: str, quiet: bool) -> None:
-        self._bar: Any = None
-        if not quiet and sys.stderr.isatty():
-            from tqdm import tqdm
-
-            self._bar = tqdm(
-                desc=one_line(label), total=total, unit=unit, leave=False, file=sys.stderr, dynamic_ncols=True
-            )
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._bar is not None:
-            self._bar.close()
-
-    def advance(self) -> None:
-        """One more is done."""
-        if self._bar is not None:
-            self._bar.update()
-
-    def print_line(self, text: str) -> None:
-        """One line of results on standard output."""
-        with self._bar_away(sys.stdout):
-            print_line(text)
-
-    def say(self, text: str) -> None:
-        """One message on standard error."""
-        with self._bar_away(sys.stderr):
-            say(text)
-
-    def _bar_away(self, stream: IO[str]) -> AbstractContextManager[Any]:
-        return nullcontext() if self._bar is None else self._bar.external_write_mode(file=stream)
-
-
 class Bars:
     """Several progress bars on standard error at once, where that is a terminal and the user wants them.
 
@@ -106,7 +62,7 @@ class Bars:
         self._is_shown = not quiet and sys.stderr.isatty()
         self._bars: list[Any] = []
 
-    def add(self, label: str, total: int | None) -> Any:
+    def add(self, label: str, total: int | None, unit: str = "frame") -> Any:
         """A new bar below the others; None where none is shown, which the other methods take too."""
         if not self._is_shown:
             return None
@@ -117,7 +73,7 @@ class Bars:
         bar = tqdm(
             desc=_shortened(one_line(label)),
             total=total,
-            unit="frame",
+            unit=unit,
             leave=False,
             file=sys.stderr,
             dynamic_ncols=True,
@@ -151,6 +107,34 @@ class Bars:
         for bar in reversed(self._bars):
             bar.close()
         self._bars.clear()
+
+
+class Progress:
+    """One progress bar. Lines of results go through its `print_line` and messages through its `say`, clear of it."""
+
+    def __init__(self, label: str, total: int | None, unit: str, quiet: bool) -> None:
+        self._bars = Bars(quiet)
+        self._bar = self._bars.add(label, total, unit)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self._bars.close()
+
+    def advance(self) -> None:
+        """One more is done."""
+        self._bars.advance(self._bar, 1)
+
+    def print_line(self, text: str) -> None:
+        """One line of results on standard output."""
+        with self._bars.away():
+            print_line(text)
+
+    def say(self, text: str) -> None:
+        """One message on standard error."""
+        with self._bars.away():
+            say(text)
 
 
 @contextmanager

@@ -4,13 +4,12 @@ Every record is frozen, has `type`, and `to_dict()` gives the object that `--jso
 documented order.
 """
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from lightgesture.features.types import Box
 from lightgesture.fsm import Event
-
-Box = tuple[int, int, int, int]
-"""x, y, width, height in pixels of the source frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +18,8 @@ class Hand:
 
     side: "left" or "right", the diver's own. token: one of the ten, or None with a `reason`
     ("low_confidence", "unknown_shape", "partial", "occluded"). confidence: 0 to 1, calibrated.
-    box: outline of the hand without the forearm. track: number of the track, None in single pictures.
+    box: outline of the hand without the forearm, source pixels. track: number of the track, None in single pictures.
+    probabilities: of every class, 0 to 1, before the refusal; no part of the record.
     """
 
     side: str
@@ -28,6 +28,17 @@ class Hand:
     box: Box
     track: int | None
     reason: str | None
+    probabilities: Mapping[str, float] = field(default_factory=dict, compare=False, repr=False)
+
+    def to_dict(self) -> dict[str, Any]:
+        return {
+            "side": self.side,
+            "token": self.token,
+            "confidence": self.confidence,
+            "box": list(self.box),
+            "track": self.track,
+            "reason": self.reason,
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,12 +49,16 @@ class FrameRecord:
     source: str | None
     frame: int | None
     time_s: float | None
-    hands: tuple[Hand, ...]
+    hands: tuple[Hand, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        record = asdict(self)
-        record["hands"] = [{**hand, "box": list(hand["box"])} for hand in record["hands"]]
-        return record
+        return {
+            "type": self.type,
+            "source": self.source,
+            "frame": self.frame,
+            "time_s": self.time_s,
+            "hands": [hand.to_dict() for hand in self.hands],
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

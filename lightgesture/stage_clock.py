@@ -2,11 +2,8 @@
 
 import time
 from collections import defaultdict, deque
-from collections.abc import Iterator
-from contextlib import contextmanager
 from statistics import median, quantiles
 
-STAGES = ("colour", "regions", "tracks", "classify", "decode")
 KEPT_TIMES = 2_000
 """Frames whose times make the summary's medians, the last ones: a camera that runs for days needs no more memory."""
 
@@ -17,21 +14,31 @@ class StageClock:
     def __init__(self) -> None:
         self._stages: dict[str, deque[float]] = defaultdict(lambda: deque(maxlen=KEPT_TIMES))
         self._frames: deque[float] = deque(maxlen=KEPT_TIMES)
-        self._current = 0.0
+        self._started = self._lapped = 0.0
 
-    @contextmanager
-    def stage(self, name: str) -> Iterator[None]:
-        """Time one stage of the current frame."""
-        start = time.perf_counter()
-        yield
-        spent = (time.perf_counter() - start) * 1e3
-        self._stages[name].append(spent)
-        self._current += spent
+    def start(self) -> None:
+        """A frame begins, and with it its first stage."""
+        self._started = self._lapped = time.perf_counter()
+
+    def lap(self, stage: str) -> None:
+        """The stage that ran until now ends."""
+        now = time.perf_counter()
+        self._stages[stage].append((now - self._lapped) * 1e3)
+        self._lapped = now
 
     def end_frame(self) -> None:
-        """Close the current frame: its time is the sum of its stages."""
-        self._frames.append(self._current)
-        self._current = 0.0
+        """The frame ends with its last stage."""
+        self._frames.append((self._lapped - self._started) * 1e3)
+
+    @property
+    def frames_ms(self) -> tuple[float, ...]:
+        """Milliseconds of each of the last frames, at most KEPT_TIMES."""
+        return tuple(self._frames)
+
+    @property
+    def stages_ms(self) -> dict[str, tuple[float, ...]]:
+        """Stage -> milliseconds in each of the last frames, at most KEPT_TIMES."""
+        return {name: tuple(times) for name, times in self._stages.items()}
 
     def per_frame(self) -> dict[str, float]:
         """Median and 95th percentile, milliseconds a frame; zeros before the first."""
@@ -41,5 +48,5 @@ class StageClock:
         return {"median": round(median(self._frames), 3), "p95": round(p95, 3)}
 
     def per_stage(self) -> dict[str, float]:
-        """Median milliseconds of each stage in the order of the pipeline."""
-        return {name: round(median(self._stages[name]), 4) for name in STAGES if self._stages[name]}
+        """Median milliseconds of each stage, in the order in which they run."""
+        return {name: round(median(times), 4) for name, times in self._stages.items()}

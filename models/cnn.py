@@ -1,6 +1,6 @@
 """A tiny convolutional net in integers that names the token of a patch.
 
-The net is data (`features.network`): LiteRT runs it where installed, NumPy computes the same integers elsewhere. It may
+The net is data (`features.net`): LiteRT runs it where installed, NumPy computes the same integers elsewhere. It may
 look at the numbers of the patch's outline, too. Patches are standardised channel by channel first
 (`features.standardise`), so that cast, veil and exposure drop out.
 Probabilities are the softmax of scores / temperature (Guo, Pleiss, Sun and Weinberger, "On Calibration of Modern Neural

@@ -1,45 +1,29 @@
-"""The file of a hand net: its integers (`features.network_file`), how patches are cut, and its temperature."""
+"""The file of a hand net: its integers (`features.net.file`), how patches are cut, and its temperature."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.net.file import network_arrays, network_from
+from lightgesture.features.net.file import network_from
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
-from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive
+from lightgesture.models.archive import check_kind, positive, read_model, settings_from
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel
 from lightgesture.models.errors import ModelError
 
 KIND: Final = "cnn"
-FORMAT: Final = 1
+FORMAT: Final = 2
 """Version of the file; raised whenever an older reader would misread a newer file."""
 
 NET: Final = "net"
-"""Beginning of the names of the net's arrays."""
-
-
-def write_cnn_model(model: CnnModel, path: Path) -> None:
-    """Write a model file, whole or not at all; raises ModelError if it cannot be written."""
-    header = {
-        "format": FORMAT,
-        "kind": KIND,
-        "classes": list(model.classes),
-        "patch": asdict(model.patch),
-        "contour": None if model.contour is None else asdict(model.contour),
-        "temperature": model.temperature,
-        "smallest_hand": model.smallest_hand,
-    }
-    numbers = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
-    write_archive(path, header, {**network_arrays(NET, model.network), **numbers})
+"""Beginning of the names of the net's members."""
 
 
 def read_cnn_model(path: Path) -> CnnModel:
     """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
-    return cnn_model_from(path, *read_archive(path))
+    return cnn_model_from(path, *read_model(path))
 
 
 def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CnnModel:

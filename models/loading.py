@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.types import Box
-from lightgesture.models.archive import read_archive
+from lightgesture.models.archive import read_model
+from lightgesture.models.errors import ModelError
 
 DATA: Final = Path(__file__).resolve().parent / "data"
 SHIPPED: Final = {name: DATA / f"{name}.npz" for name in ("cnn", "svm")}
@@ -42,13 +43,17 @@ def load_classifier(model: str | os.PathLike[str] = DEFAULT) -> Classifier:
     Raises ModelError if the file is missing, cut off, of another version or not a model.
     """
     path = SHIPPED.get(str(model), Path(model))
-    header, arrays = read_archive(path)
+    header, arrays = read_model(path)
     # Each kind is imported when it is asked for: the net's run-time takes longer to load than all of the other.
     if header.get("kind") == "cnn":
+        from lightgesture.features.net.network import NetworkError
         from lightgesture.models.cnn import CnnClassifier
         from lightgesture.models.cnn_file import cnn_model_from
 
-        return CnnClassifier(cnn_model_from(path, header, arrays))
+        try:
+            return CnnClassifier(cnn_model_from(path, header, arrays))
+        except NetworkError as error:
+            raise ModelError(f"{path}: {error}") from error
     from lightgesture.models.svm import SvmClassifier
     from lightgesture.models.svm_file import svm_model_from
 

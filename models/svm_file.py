@@ -3,7 +3,7 @@
 Projection and expansion vectors are stored as float16, which halves the file and moves scores by less than 0.01.
 """
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from lightgesture.features.hog import HogSettings
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings, block_lengths
-from lightgesture.models.archive import check_kind, positive, read_archive, settings_from, write_archive
+from lightgesture.models.archive import check_kind, positive, read_model, settings_from
 from lightgesture.models.errors import ModelError
 
 Float = NDArray[np.float32]
@@ -54,23 +54,9 @@ class SvmModel:
     smallest_hand: int
 
 
-def write_svm_model(model: SvmModel, path: Path) -> None:
-    """Write a model file, whole or not at all; raises ModelError if it cannot be written."""
-    header = {
-        "format": FORMAT,
-        "kind": KIND,
-        "classes": list(model.classes),
-        "features": asdict(model.features),
-        "gamma": model.gamma,
-        "temperature": model.temperature,
-        "smallest_hand": model.smallest_hand,
-    }
-    write_archive(path, header, {name: getattr(model, name).astype(kind) for name, kind in ARRAYS.items()})
-
-
 def read_svm_model(path: Path) -> SvmModel:
     """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
-    return svm_model_from(path, *read_archive(path))
+    return svm_model_from(path, *read_model(path))
 
 
 def svm_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> SvmModel:

@@ -12,9 +12,13 @@ import numpy as np
 
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.textures import FLOORS, caustics, periodic_noise
-from lightgesture.synth.water import Water
+from lightgesture.synth.water import Water, through_water
 
 TEXTURE_SIZE = 512
+TEXTURE_M = 2.0
+"""Size of one repeat of the floor's texture, metres."""
+OVERHEAD = 1.6
+"""Brightness of the water overhead against straight ahead."""
 FAR_M = 40.0
 """Beyond this distance a plane is drawn as open water, metres."""
 
@@ -24,18 +28,15 @@ class BackdropLook:
     """Layout of the surroundings.
 
     floor: key of textures.FLOORS, or "" for open water. floor_m / surface_m: below / above the camera, metres
-    (surface_m 0: not in view). horizon: row of the horizon as a share of the height. texture_m: size of one repeat
-    of the floor's texture. caustic: contrast of caustics 0..1. brightness: of the water overhead against straight
-    ahead.
+    (surface_m 0: not in view). horizon: row of the horizon as a share of the height. caustic: contrast of caustics
+    0..1.
     """
 
     floor: str = "sand"
     floor_m: float = 1.6
     surface_m: float = 0.0
     horizon: float = 0.45
-    texture_m: float = 2.0
     caustic: float = 0.5
-    brightness: float = 1.6
 
 
 class Backdrop:
@@ -53,25 +54,21 @@ class Backdrop:
         self._surface = self._plane(look.surface_m, focal, below=False) if look.surface_m > 0.0 else None
         if self._floor is not None:
             albedo = FLOORS[look.floor](rng, TEXTURE_SIZE)
-            self._static = self._sample(albedo, self._floor[0], self._floor[1], look.texture_m)
+            self._static = self._sample(albedo, self._floor[0], self._floor[1], TEXTURE_M)
 
-    def frame(self, time_s: float, shift: tuple[float, float] = (0.0, 0.0)) -> Float32:
-        """Linear picture (h, w, 3) at a time; `shift` in pixels moves everything with the camera."""
+    def frame(self, time_s: float) -> Float32:
+        """Linear picture (h, w, 3) at a time."""
         picture = self._open.copy()
         if self._floor is not None:
             self._draw_floor(picture, time_s)
         if self._surface is not None:
             self._draw_surface(picture, time_s)
-        if shift != (0.0, 0.0):
-            move = np.array([[1.0, 0.0, 0.5 * shift[0]], [0.0, 1.0, 0.5 * shift[1]]], np.float32)
-            moved = cv2.warpAffine(picture, move, picture.shape[1::-1], borderMode=cv2.BORDER_REPLICATE)
-            picture = np.asarray(moved, np.float32)
         return np.asarray(cv2.resize(picture, self.size, interpolation=cv2.INTER_LINEAR), np.float32)
 
     def _open_water(self) -> Float32:
         height = self.size[1]
         up = (self.look.horizon * height - self._rows[:, :1]) / height
-        glow = np.exp(np.log(self.look.brightness) * 2.0 * np.clip(up, -0.5, 0.6))
+        glow = np.exp(np.log(OVERHEAD) * 2.0 * np.clip(up, -0.5, 0.6))
         return np.asarray(
             np.broadcast_to(glow[..., None] * self.water.veil, (*self._rows.shape, 3)), np.float32
         )
@@ -83,7 +80,7 @@ class Backdrop:
         distance = gap_m / drop
         x = (self._columns - 0.5 * self.size[0]) / focal * distance
         range_m = np.minimum(distance * np.sqrt(1.0 + drop * drop), 4.0 * FAR_M)
-        seen = np.exp(-range_m[..., None] * self.water.attenuation) * (distance < FAR_M)[..., None]
+        seen = self.water.transmission(range_m[..., None]) * (distance < FAR_M)[..., None]
         return x.astype(np.float32), np.minimum(distance, FAR_M).astype(np.float32), seen.astype(np.float32)
 
     @staticmethod
@@ -103,8 +100,7 @@ class Backdrop:
         net = np.minimum(first, second)
         light = (1.0 - self.look.caustic) + np.float32(self.look.caustic * 1.6) * np.minimum(net, 3.0)
         plane = self._static * light[..., None] * self.water.light * np.float32(0.8)
-        picture *= 1.0 - seen
-        picture += plane * seen
+        picture[:] = through_water(plane, seen, seen, picture)
 
     def _draw_surface(self, picture: Float32, time_s: float) -> None:
         """The surface from below: bright and dark patches of sky and mirrored water that ripple."""
@@ -115,5 +111,4 @@ class Backdrop:
         wave += np.float32(0.6) * self._sample(self.ripples, x - drift, z * np.float32(2.0) + drift, 1.3)
         bright = np.clip(0.5 + 0.4 * wave, 0.0, 1.6)
         plane = bright[..., None] * self.water.light * np.float32(0.75) + self.water.veil * np.float32(0.5)
-        picture *= 1.0 - seen
-        picture += plane * seen
+        picture[:] = through_water(plane, seen, seen, picture)

@@ -23,6 +23,9 @@ MOUTH = (0.0, 160.0, 125.0)
 UPPER_ARM_MM, FOREARM_MM = 300.0, 265.0
 SHOULDER = np.array([178.0, -15.0, 0.0])
 BODY_BLEND_MM, SMALL_BLEND_MM = 28.0, 4.0
+GLASS_BGR, RUBBER_BGR = (0.22, 0.2, 0.16), (0.02, 0.02, 0.02)
+REDUCTION = 2
+"""How many times smaller than the picture a body is rendered."""
 OCCLUSION_SCALE = 4.0
 """Bodies are larger than hands: radius of the occlusion blur against that of `shading`."""
 GLOSS = {SUIT: 0.03, ACCENT: 0.03, SKIN: 0.06, HOOD: 0.03, MASK: 0.15, GLASS: 0.35, RUBBER: 0.08}
@@ -42,8 +45,6 @@ class BodyLook:
     skin_bgr: tuple[float, float, float] = (0.25, 0.36, 0.6)
     hood_bgr: tuple[float, float, float] = (0.015, 0.015, 0.015)
     mask_bgr: tuple[float, float, float] = (0.45, 0.12, 0.02)
-    glass_bgr: tuple[float, float, float] = (0.22, 0.2, 0.16)
-    rubber_bgr: tuple[float, float, float] = (0.02, 0.02, 0.02)
     hood: bool = True
     mask: bool = True
     snorkel: bool = False
@@ -51,13 +52,12 @@ class BodyLook:
     bare_arms: bool = False
     cuff_mm: float = 35.0
     legs: bool = True
-    scale: float = 1.0
 
     def palette(self) -> Float32:
         """Albedo of every material, (8, 3)."""
         rows = [
             (0.0, 0.0, 0.0), self.suit_bgr, self.accent_bgr, self.skin_bgr, self.hood_bgr, self.mask_bgr,
-            self.glass_bgr, self.rubber_bgr,
+            GLASS_BGR, RUBBER_BGR,
         ]  # fmt: skip
         return np.array(rows, np.float32)
 
@@ -93,12 +93,12 @@ class _Parts:
         self.kinds.append((material, blend))
 
 
-def elbow_position(shoulder: FloatArray, wrist: FloatArray, outward: float, scale: float = 1.0) -> FloatArray:
+def elbow_position(shoulder: FloatArray, wrist: FloatArray, outward: float) -> FloatArray:
     """Elbow of a two-bone arm that reaches from shoulder to wrist, bent downwards and `outward` (+1 or -1 in x).
 
     A wrist out of reach is met by a straight arm: the elbow then lies on the line.
     """
-    upper, fore = UPPER_ARM_MM * scale, FOREARM_MM * scale
+    upper, fore = UPPER_ARM_MM, FOREARM_MM
     line = wrist - shoulder
     distance = float(np.linalg.norm(line))
     reach = min(max(distance, abs(upper - fore) + 1.0), upper + fore - 1.0)
@@ -167,12 +167,12 @@ def _add_arm(
 
 def render_body(
     look: BodyLook, rotation: FloatArray, position: FloatArray, wrists: tuple[FloatArray, FloatArray],
-    camera: Camera, size: tuple[int, int], light: Light, water: Water | None = None, reduction: int = 2,
+    camera: Camera, size: tuple[int, int], light: Light, water: Water | None = None,
 ) -> tuple[Float32, Float32]:  # fmt: skip
     """Radiance (h, w, 3), premultiplied, and coverage (h, w) of the body in a picture of `size` (width, height).
 
     rotation (3, 3) and position (3,) place the body frame before the camera (x right, y up, z depth towards the
-    scene); wrists: left and right, in the body frame. water: what lies between, None in air. Rendered `reduction`
+    scene); wrists: left and right, in the body frame. water: what lies between, None in air. Rendered `REDUCTION`
     times smaller, because suits are smooth.
     """
     parts = _Parts()
@@ -180,21 +180,18 @@ def render_body(
     _add_head(parts, look)
     for side, wrist in zip((1.0, -1.0), wrists, strict=True):
         shoulder = SHOULDER * np.array([side, 1.0, 1.0])
-        _add_arm(
-            parts, look, shoulder, elbow_position(shoulder, wrist / look.scale, side), wrist / look.scale
-        )
-    local = np.array(parts.points) * look.scale
-    world = to_camera(local, rotation, position)
+        _add_arm(parts, look, shoulder, elbow_position(shoulder, wrist, side), wrist)
+    world = to_camera(np.array(parts.points), rotation, position)
     image, scale = camera.project(world)
-    image, scale = image / reduction, scale / reduction
-    nearness = -(world[:, 2] - position[2]) * camera.focal / position[2] / reduction
-    radii = np.array(parts.radii) * look.scale * scale
-    canvas = Canvas(size[0] // reduction, size[1] // reduction)
+    image, scale = image / REDUCTION, scale / REDUCTION
+    nearness = -(world[:, 2] - position[2]) * camera.focal / position[2] / REDUCTION
+    radii = np.array(parts.radii) * scale
+    canvas = Canvas(size[0] // REDUCTION, size[1] // REDUCTION)
     spheres = np.column_stack([image, nearness, radii]).tolist()
     for index, (material, blend) in enumerate(parts.kinds):
         a, b = sorted(spheres[2 * index : 2 * index + 2], key=lambda sphere: -sphere[3])
         canvas.draw(Cone(tuple(a), tuple(b), blend * float(scale[2 * index]), material))
-    radiance, cover = _shaded(canvas, look, light, camera.focal / position[2] / reduction, position[2], water)
+    radiance, cover = _shaded(canvas, look, light, camera.focal / position[2] / REDUCTION, position[2], water)
     return (
         np.asarray(cv2.resize(radiance, size, interpolation=cv2.INTER_LINEAR), np.float32),
         np.asarray(cv2.resize(cover, size, interpolation=cv2.INTER_LINEAR), np.float32),

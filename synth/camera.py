@@ -94,3 +94,18 @@ class Sensor:
         x, y = self._corners[frame % CORNERS]
         variance = np.float32(self.look.shot) * np.maximum(picture, 0.0) + np.float32(self.look.read**2)
         picture += self._noise[y : y + rows, x : x + columns] * cv2.sqrt(variance)
+
+
+def draw_camera(rng: np.random.Generator) -> CameraLook:
+    """A camera of changing quality, for single pictures."""
+    return CameraLook(
+        target=float(rng.uniform(0.12, 0.4)), balance=float(rng.uniform(0.0, 0.6)), drift=0.0,
+        shot=0.0006 * float(rng.uniform(0.1, 3.0)), read=0.004 * float(rng.uniform(0.1, 2.0)),
+        blur_px=float(rng.uniform(0.0, 1.1)), jpeg=int(rng.integers(40, 96)) if rng.uniform() < 0.6 else 0,
+        motion_px=float(rng.uniform(2.0, 5.0)) if rng.uniform() < 0.1 else 0.0,
+    )  # fmt: skip
+
+
+def photographed(picture: Float32, look: CameraLook, rng: np.random.Generator) -> Picture:
+    """The 8-bit BGR photograph of one linear picture (h, w, 3), which is used up."""
+    return Sensor(look, (picture.shape[1], picture.shape[0]), rng, margin=0).expose(picture, 0, 0.0)

@@ -84,8 +84,5 @@ def _specs(args: argparse.Namespace) -> "dict[str, SceneSpec]":
         stem = Path(name).stem
         if stem in specs:
             raise UsageError(f"{name}: another scene is named {stem} too and would overwrite it; rename one")
-        try:
-            specs[stem] = load_scene_spec(name)
-        except OSError as error:
-            raise UsageError(f"{name}: cannot be read ({error.strerror}); check the name") from error
+        specs[stem] = load_scene_spec(name)
     return specs

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Final
 
 import cv2
 import numpy as np
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import BodyLook, Camera, render_body
-from lightgesture.synth.conditions import draw_light, photographed, triple
+from lightgesture.synth.camera import draw_camera, photographed
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -29,46 +30,55 @@ from lightgesture.synth.poses import (
 )
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.room import Room, RoomLook
-from lightgesture.synth.shading import Light
+from lightgesture.synth.shading import Light, draw_light, triple
 from lightgesture.synth.skeleton import FloatArray, rotation_x, rotation_y, rotation_z, sample_proportions
 from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.surface import Forearm, HandView
 from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
-from lightgesture.synth.water import JERLOV_BGR, Water, make_water
+from lightgesture.synth.water import JERLOV_BGR, Water, WaterRange, make_water
 
 NONE = "none"
 SIDE_THUMB_PITCH = 1.7
 """People tilt a fist with a stretched thumb more than other signs, because the forearm comes from the side."""
+WATERS = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (float(np.exp(-3.0)), 1.0))
+"""Between camera and hand."""
 MARGIN = 1.6
 """Side of a crop against the larger side of the landmark box."""
+PALM_SHARE: Final = 0.85
+"""Share of palms among tokens other than left and right; the others show the back."""
+GLOVE_SHARE: Final = 0.03
+"""Share of gloved hands."""
+WATER_SHARE: Final = 0.3
+"""Share of hands seen through water."""
+NONE_SHARE: Final = 0.1
+"""Share of shapes that are no token."""
+PERSON_SHARE: Final = 0.6
+"""Share of rooms with somebody in them."""
+TURN_DEG: Final = (15.0, 55.0)
+"""How much further a ring that is seen from the side is turned, see `CropSettings.sideways`."""
+LOOSENESS: Final = (0.4, 1.4)
+"""See `poses.token_pose`."""
+BACKDROPS: Final = 16
+"""Surroundings of each kind, drawn once."""
 
 
 @dataclass(frozen=True, slots=True)
 class CropSettings:
-    """How samples vary.
-
-    size: range of the crop's side in pixels. palm: share of palms among tokens other than left/right. glove, water,
-    none: shares of gloved hands, of hands seen through water and of shapes that are no token. person: share of
-    rooms with somebody in them. yaw, pitch, roll: standard deviations in degrees. sideways: share of rings of thumb
-    and index that are turned further about their long axis, until the other fingers stand behind one another, by an
-    angle of the range turn, degrees. together: share of hands whose stretched fingers lie side by side. looseness:
-    range, see `poses.token_pose`. backdrops: number of surroundings of each kind, drawn once.
-    """
+    """How samples vary."""
 
     size: tuple[int, int] = (40, 112)
-    palm: float = 0.85
-    glove: float = 0.03
-    water: float = 0.3
-    none: float = 0.1
-    person: float = 0.6
+    """Smallest and largest side of a crop, pixels."""
     yaw: float = 20.0
+    """Turn of the hand about its long axis: standard deviation, degrees, 0 to 60."""
     pitch: float = 14.0
+    """Tilt towards the camera: standard deviation, degrees, 0 to 45."""
     roll: float = 13.0
+    """Lean within the picture: standard deviation, degrees, 0 to 90."""
     sideways: float = 0.0
-    turn: tuple[float, float] = (15.0, 55.0)
+    """Share, 0 to 1, of rings of thumb and index that are turned further about their long axis, until the other fingers
+    stand behind one another."""
     together: float = 0.0
-    looseness: tuple[float, float] = (0.4, 1.4)
-    backdrops: int = 16
+    """Share, 0 to 1, of hands whose stretched fingers lie side by side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +104,9 @@ class CropMaker:
         self._rooms, self._dives = self._surroundings()
 
     def samples(self, count: int) -> Iterator[Crop]:
-        """`count` crops, tokens in turn, with the settings' share of `none` strewn in."""
+        """`count` crops, tokens in turn, with a share of `none` strewn in."""
         for index in range(count):
-            if self._rng.uniform() < self.settings.none:
+            if self._rng.uniform() < NONE_SHARE:
                 yield self.sample(NONE)
             else:
                 yield self.sample(TOKENS[index % len(TOKENS)])
@@ -106,7 +116,7 @@ class CropMaker:
         rng, settings = self._rng, self.settings
         shape = str(rng.choice(list(OTHER_SHAPES))) if token == NONE else token
         left = bool(rng.uniform() < 0.5)
-        palm = bool(rng.uniform() < settings.palm)
+        palm = bool(rng.uniform() < PALM_SHARE)
         if token in SIDE_THUMB_TOKENS:
             palm = shows_palm(token, left, token == SIDE_THUMB_TOKENS[0])
         water = self._draw_water()
@@ -117,7 +127,7 @@ class CropMaker:
     def _surroundings(self) -> tuple[list[Float32], list[Float32]]:
         rng, size = self._rng, (320, 240)
         rooms, dives = [], []
-        for _ in range(self.settings.backdrops):
+        for _ in range(BACKDROPS):
             look = RoomLook(
                 wall=int(rng.integers(6)), pieces=int(rng.integers(0, 14)), lamps=int(rng.integers(3)),
                 window=float(rng.uniform(0.8, 2.5)) if rng.uniform() < 0.3 else 0.0,
@@ -125,7 +135,7 @@ class CropMaker:
             )  # fmt: skip
             room = Room(look, size, rng)
             picture = room.frame(0.0)
-            if rng.uniform() < self.settings.person:
+            if rng.uniform() < PERSON_SHARE:
                 self._draw_person(picture, room.light(rng))
             rooms.append(picture)
             floor = str(rng.choice(("sand", "tiles", "rocks")))
@@ -155,14 +165,13 @@ class CropMaker:
 
     def _draw_water(self) -> Water | None:
         rng = self._rng
-        if rng.uniform() >= self.settings.water:
+        if rng.uniform() >= WATER_SHARE:
             return None
-        kind = str(rng.choice(list(JERLOV_BGR)[:9]))
-        return make_water(kind, float(rng.uniform(0.5, 8.0)), float(np.exp(rng.uniform(-3.0, 0.0))))
+        return make_water(*WATERS.draw(rng))
 
     def _render(self, shape: str, left: bool, palm: bool, water: Water | None) -> HandImage:
         rng, settings = self._rng, self.settings
-        if rng.uniform() < settings.glove:
+        if rng.uniform() < GLOVE_SHARE:
             tone = glove_tone(GLOVES[int(rng.integers(len(GLOVES)))])
         else:
             tone = skin_tone(
@@ -173,7 +182,7 @@ class CropMaker:
         bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
         yaw = TOKEN_YAW_DEG.get(shape, 0.0) + rng.normal(0.0, settings.yaw) + (0.0 if palm else 180.0)
         if shape in TOKEN_YAW_DEG and settings.sideways and rng.uniform() < settings.sideways:
-            yaw += rng.uniform(*settings.turn)
+            yaw += rng.uniform(*TURN_DEG)
         sign = -1.0 if left else 1.0
         lean = TOKEN_LEAN_DEG.get(shape, 0.0) * (-1.0 if left == palm else 1.0)
         rotation = (
@@ -185,7 +194,7 @@ class CropMaker:
         )
         view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)
         together = settings.together > 0.0 and bool(rng.uniform() < settings.together)
-        pose = token_pose(shape, rng, float(rng.uniform(*settings.looseness)), together=together)
+        pose = token_pose(shape, rng, float(rng.uniform(*LOOSENESS)), together=together)
         hand = render_hand(pose, view, look, draw_light(rng, water), Forearm(110.0, bare))
         if water is None:
             return hand
@@ -207,7 +216,7 @@ class CropMaker:
         scale = side / whole
         interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
         picture = np.asarray(cv2.resize(picture, (side, side), interpolation=interpolation), np.float32)
-        image = photographed(picture, rng)
+        image = photographed(picture, draw_camera(rng), rng)
         offset = (-round(corner[0]), -round(corner[1]))
         x, y, width, height = hand.box
         box = (

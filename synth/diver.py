@@ -121,8 +121,8 @@ def draw_arm_hand(
     left = side == "left"
     arm = state.left if left else state.right
     sign = 1.0 if left else -1.0
-    shoulder = SHOULDER * look.body.scale * np.array([sign, 1.0, 1.0])
-    elbow = elbow_position(shoulder, arm.wrist, sign, look.body.scale)
+    shoulder = SHOULDER * np.array([sign, 1.0, 1.0])
+    elbow = elbow_position(shoulder, arm.wrist, sign)
     body = rotation_matrix(state.rotation)
     points = to_camera(np.stack([arm.wrist, elbow]), body, state.position)
     image, scale = camera.project(points)

@@ -45,11 +45,6 @@ class HandImage:
     box: Box
     landmarks: FloatArray
 
-    @property
-    def bgr(self) -> NDArray[np.uint8]:
-        """The hand on black as 8-bit BGR."""
-        return encode(self.radiance)
-
     def paste(self, picture: Float32) -> None:
         """Lay the hand over a linear float picture (in place), clipped at its edges."""
         target, part = self._overlap(picture)

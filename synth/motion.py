@@ -7,35 +7,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lightgesture.synth.activities import ACTIVITIES
 from lightgesture.synth.diver import ArmState, DiverState
 from lightgesture.synth.poses import SIDE_THUMB_TOKENS, TOKEN_LEAN_DEG, TOKEN_YAW_DEG, blend_poses, token_pose
-from lightgesture.synth.script import Hold, Moment, moment_at
+from lightgesture.synth.script import ACTIVITIES, Hold, Moment, moment_at
 from lightgesture.synth.skeleton import FloatArray
+
+SPREAD_MM = 18.0
+"""How far the place of the hands varies from sign to sign."""
+TURN_DEG = (11.0, 10.0, 9.0)
+"""The same of a hand's yaw, pitch and roll, per unit of looseness."""
+DRIFT_HZ = 0.25
+"""Of the body; hands tremble four times as quickly."""
+DIP_MM = 45.0
+"""How far hands sink between signs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """One diver's way of signing; lengths in millimetres, angles in degrees, frequencies in Hz.
+    """One diver's way of signing; lengths in millimetres, angles in degrees.
 
-    wrist: where the left hand is held, body frame (the right one is its mirror image). spread_mm: how far it varies
-    from sign to sign. turn_deg: the same for the hand's yaw, pitch and roll, per unit of looseness. looseness: of
-    the shapes, see `poses.token_pose`. drift_mm / drift_deg: standard deviation of
-    the body's drift. tremor_mm: of the hands. drift_hz: of both. dip_mm: how far hands sink between signs.
+    wrist: where the left hand is held, body frame (the right one is its mirror image). looseness: of the shapes, see
+    `poses.token_pose`. drift_mm / drift_deg: standard deviation of the body's drift. tremor_mm: of the hands.
     approach_mm: how much nearer the diver is at the end.
     """
 
     wrist: tuple[float, float, float] = (300.0, 70.0, 220.0)
-    spread_mm: float = 18.0
-    turn_deg: tuple[float, float, float] = (11.0, 10.0, 9.0)
     looseness: float = 0.8
     distance_mm: float = 1300.0
     height_mm: float = -60.0
     drift_mm: tuple[float, float, float] = (14.0, 12.0, 30.0)
     drift_deg: tuple[float, float, float] = (5.0, 3.0, 3.0)
     tremor_mm: float = 3.0
-    drift_hz: float = 0.25
-    dip_mm: float = 45.0
     approach_mm: float = 0.0
 
 
@@ -62,8 +64,8 @@ class Performance:
         self._length_s = max(length_s, 1e-3)
         self.timeline, self.style = tuple(timeline), style
         self._keys = [tuple(self._arm(hold, side, rng) for side in (0, 1)) for hold in self.timeline]
-        self._body = Drift(rng, 6, style.drift_hz)
-        self._hands = Drift(rng, 6, 4.0 * style.drift_hz)
+        self._body = Drift(rng, 6, DRIFT_HZ)
+        self._hands = Drift(rng, 6, 4.0 * DRIFT_HZ)
 
     def state(self, frame: int, time_s: float) -> tuple[DiverState, Moment]:
         """Where everything is in a frame, and the moment of the timeline it belongs to."""
@@ -93,8 +95,8 @@ class Performance:
     def _arm(self, hold: Hold, hand: int, rng: np.random.Generator) -> ArmState:
         """How one hand (0 left, 1 right) is held in a hold."""
         style, sign = self.style, np.array([1.0 if hand == 0 else -1.0, 1.0, 1.0])
-        spread = rng.normal(0.0, style.spread_mm, 3)
-        turn = rng.normal(0.0, style.looseness, 3) * np.array(style.turn_deg)
+        spread = rng.normal(0.0, SPREAD_MM, 3)
+        turn = rng.normal(0.0, style.looseness, 3) * np.array(TURN_DEG)
         if hold.pair is None:
             activity = ACTIVITIES[hold.activity][hand]
             pose = token_pose(activity.shape, rng, style.looseness)
@@ -111,6 +113,6 @@ class Performance:
             return old
         eased = part * part * (3.0 - 2.0 * part)
         wrist = old.wrist + eased * (new.wrist - old.wrist)
-        wrist = wrist - np.array([0.0, 4.0 * part * (1.0 - part) * self.style.dip_mm, 0.0])
+        wrist = wrist - np.array([0.0, 4.0 * part * (1.0 - part) * DIP_MM, 0.0])
         turn = old.turn + eased * (new.turn - old.turn)
         return ArmState(wrist, turn, blend_poses(old.pose, new.pose, part))

@@ -147,14 +147,18 @@ def _loosened(angles: FloatArray, token: str, rng: np.random.Generator, loosenes
     return angles
 
 
-def blend_poses(before: HandPose, after: HandPose, part: float, stagger: float = 0.18) -> HandPose:
+STAGGER = 0.18
+"""By which part of a change of shape the last finger starts later than the first."""
+
+
+def blend_poses(before: HandPose, after: HandPose, part: float) -> HandPose:
     """The hand on its way from one shape to the next, `part` 0..1.
 
-    Fingers do not move together: each starts a little later (`stagger` of the whole way from the first to the
+    Fingers do not move together: each starts a little later (`STAGGER` of the whole way from the first to the
     last), eases in and out, and opens slightly in passing, as hands relax between signs.
     """
-    delays = stagger * np.array([0.5, 0.0, 0.35, 0.7, 1.0])
-    own = np.clip((part - delays) / (1.0 - stagger), 0.0, 1.0)
+    delays = STAGGER * np.array([0.5, 0.0, 0.35, 0.7, 1.0])
+    own = np.clip((part - delays) / (1.0 - STAGGER), 0.0, 1.0)
     eased = (own * own * (3.0 - 2.0 * own))[:, None]
     angles = before.angles + (after.angles - before.angles) * eased
     relaxed = OTHER_SHAPES["relaxed"]

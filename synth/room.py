@@ -60,14 +60,10 @@ class Room:
             picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), sigma), np.float32)
         self._picture = picture
 
-    def frame(self, time_s: float, shift: tuple[float, float] = (0.0, 0.0)) -> Float32:
+    def frame(self, time_s: float) -> Float32:
         """Linear picture (h, w, 3); rooms stand still, so time has no effect."""
         del time_s
-        if shift == (0.0, 0.0):
-            return self._picture.copy()
-        move = np.array([[1.0, 0.0, shift[0]], [0.0, 1.0, shift[1]]], np.float32)
-        moved = cv2.warpAffine(self._picture, move, self.size, borderMode=cv2.BORDER_REPLICATE)
-        return np.asarray(moved, np.float32)
+        return self._picture.copy()
 
     def light(self, rng: np.random.Generator) -> Light:
         """Light on the person: from lamps above and, with a window behind, little from the front."""

@@ -22,7 +22,7 @@ from lightgesture.synth.hand import HandLook
 from lightgesture.synth.motion import Performance, Style
 from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.script import Hold, Timing, make_timeline, tokens_at
-from lightgesture.synth.shading import Light
+from lightgesture.synth.shading import daylight
 from lightgesture.synth.skeleton import sample_proportions
 from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.spec import DiverSpec, SceneSpec
@@ -35,6 +35,8 @@ MIN_VISIBLE = 0.6
 
 BARE_CUFF_MM = 40.0
 """Where a bare forearm passes from the hand's rendering to the body's, from the wrist."""
+DAYLIGHT = (-0.25, -0.85, 0.55)
+"""Where light comes from under water, image axes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,7 @@ class Scene:
             return
         water = make_water(spec.water.kind, spec.water.depth_m, spec.water.turbidity)
         look = BackdropLook(back.floor, back.floor_m, back.surface_m, back.horizon, caustic=back.caustic)
-        self._water, self._light = water, _water_light(water.light, water.veil)
+        self._water, self._light = water, daylight(water, DAYLIGHT)
         self._backdrop = Backdrop(look, water, self._camera.focal, spec.size, streams["backdrop"])
         if back.particles:
             self._particles = Particles(back.particles, self._camera, spec.size, streams["specks"])
@@ -182,15 +184,3 @@ def _camera_look(spec: SceneSpec, blur_px: float) -> CameraLook:
         target=camera.exposure, balance=camera.balance, shot=good.shot * camera.noise, read=good.read * camera.noise,
         blur_px=blur_px, motion_px=camera.motion_px, jpeg=camera.jpeg, drift=camera.drift,
     )  # fmt: skip
-
-
-def _water_light(light: NDArray[np.float32], veil: NDArray[np.float32]) -> Light:
-    """Daylight from above, scattered light from around."""
-    key, sky, ground = light * np.float32(0.85), light * np.float32(0.42), veil * np.float32(0.7)
-    return Light(
-        direction=(-0.25, -0.85, 0.55),
-        key=(float(key[0]), float(key[1]), float(key[2])),
-        sky=(float(sky[0]), float(sky[1]), float(sky[2])),
-        ground=(float(ground[0]), float(ground[1]), float(ground[2])),
-        shadow=0.45,
-    )

@@ -1,4 +1,9 @@
-"""What the diver signs and when: sentences -> words -> pairs -> a timeline of holds and passages, in frames."""
+"""What the diver signs and when: sentences -> words -> pairs -> a timeline of holds and passages, in frames.
+
+Between sentences the hands rest or are busy: wave, point, swim, adjust the mask, hold on, fold the arms. Where they are
+then is given for the left hand in the body frame, millimetres; the right one is mirrored. Turns are yaw, pitch and roll
+in degrees, as in `diver.ArmState`.
+"""
 
 from __future__ import annotations
 
@@ -8,26 +13,69 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lightgesture.fsm import Grammar
-from lightgesture.synth.activities import ACTIVITIES, MARK
 
 Pair = tuple[str, str]
 """Tokens of the diver's left and right hand."""
 NUMBERED_WORD = "PARAM"
+BUSY = (45, 90)
+"""Fewest and most frames of an activity."""
+LEAD = 8
+"""Frames with lowered hands before the first sign and after the last."""
+
+Vector = tuple[float, float, float]
+NO_SWAY: Vector = (0.0, 0.0, 0.0)
+LOWERED_WRIST: Vector = (330.0, -400.0, 120.0)
+LOWERED_TURN: Vector = (60.0, 15.0, 150.0)
+"""Edge to the camera, fingers down."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandActivity:
+    """One hand: `shape` (a token or a name of poses.OTHER_SHAPES) held at `wrist` and `turn`, swaying by `sway` (mm,
+    amplitude) at `hz`. token: what a reader of single hands would rightly call it, None for no token.
+    """
+
+    shape: str
+    wrist: Vector
+    turn: Vector
+    sway: Vector = NO_SWAY
+    hz: float = 1.0
+    token: str | None = None
+
+
+REST = HandActivity("relaxed", LOWERED_WRIST, LOWERED_TURN)
+ACTIVITIES: dict[str, tuple[HandActivity, HandActivity]] = {
+    "rest": (REST, REST),
+    "wave": (REST, HandActivity("5", (330.0, 190.0, 180.0), (0.0, 0.0, 0.0), (90.0, 15.0, 0.0), 1.3, "5")),
+    "point": (REST, HandActivity("1", (260.0, -20.0, 380.0), (75.0, 65.0, 20.0))),
+    "mask": (
+        HandActivity("pinch", (75.0, 150.0, 170.0), (60.0, 0.0, 35.0), (6.0, 8.0, 0.0), 0.8),
+        HandActivity("pinch", (75.0, 150.0, 170.0), (60.0, 0.0, 35.0), (6.0, 8.0, 0.0), 0.8),
+    ),
+    "swim": (
+        HandActivity("relaxed", (330.0, 0.0, 240.0), (85.0, 30.0, 60.0), (140.0, 40.0, 120.0), 0.5),
+        HandActivity("relaxed", (330.0, 0.0, 240.0), (85.0, 30.0, 60.0), (140.0, 40.0, 120.0), 0.5),
+    ),
+    "grip": (REST, HandActivity("grip", (170.0, -150.0, 260.0), (70.0, 20.0, -60.0))),
+    "fold": (
+        HandActivity("relaxed", (-120.0, -170.0, 170.0), (120.0, 0.0, -70.0)),
+        HandActivity("relaxed", (-120.0, -230.0, 150.0), (120.0, 0.0, -70.0)),
+    ),
+}
+MARK = "~"
+"""A script names an activity by this sign and its name, e.g. "~wave"."""
 
 
 @dataclass(frozen=True, slots=True)
 class Timing:
     """Frames of each phase; every hold and passage is drawn uniformly from its range (both ends included).
 
-    hold: a sign. passage: from one sign to the next. pause: hands lowered. lead: lowered before the first sign and
-    after the last.
+    hold: a sign. passage: from one sign to the next. pause: hands lowered.
     """
 
     hold: tuple[int, int] = (22, 34)
     passage: tuple[int, int] = (7, 12)
     pause: tuple[int, int] = (12, 24)
-    activity: tuple[int, int] = (45, 90)
-    lead: int = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,10 +149,10 @@ def make_timeline(
         shown.append(rest)
     if not shown or shown[-1] != rest:
         shown.append(rest)
-    holds, clock = [replace(rest, end=timing.lead)], timing.lead
+    holds, clock = [replace(rest, end=LEAD)], LEAD
     for order, hold in enumerate(shown):
         clock += int(rng.integers(timing.passage[0], timing.passage[1] + 1))
-        length = timing.lead if order == len(shown) - 1 else _length(hold, timing, rng)
+        length = LEAD if order == len(shown) - 1 else _length(hold, timing, rng)
         holds.append(replace(hold, start=clock, end=clock + length))
         clock += length
     return holds
@@ -123,7 +171,7 @@ def _length(hold: Hold, timing: Timing, rng: np.random.Generator) -> int:
     if hold.pair is not None:
         low, high = timing.hold
     else:
-        low, high = timing.pause if hold.activity == "rest" else timing.activity
+        low, high = timing.pause if hold.activity == "rest" else BUSY
     return int(rng.integers(low, high + 1))
 
 

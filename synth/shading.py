@@ -9,6 +9,7 @@ scattering (Green, "Real-time approximations to subsurface scattering", GPU Gems
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -18,6 +19,7 @@ from lightgesture.synth.atlas import smoothstep, unpack_texture
 from lightgesture.synth.raster import LAYOUT, Canvas, Float32
 from lightgesture.synth.skin import BLOOD_DENSITY_BGR, Tone
 from lightgesture.synth.surface import FOREARM, HAND, SLEEVE
+from lightgesture.synth.water import Water
 
 Mask = NDArray[np.bool_]
 
@@ -37,32 +39,60 @@ class Light:
     shadow: float = 0.55
 
 
-@dataclass(frozen=True, slots=True)
-class ShadingSettings:
-    """Constants of the skin's response; lengths in millimetres.
-
-    wrap_bgr: how far diffuse light wraps beyond the terminator. smooth_mm: flesh smoothing of palm and forearm.
-    occlusion_mm / occlusion_per_mm: radius of the depth blur and darkening per millimetre below it, up to
-    occlusion_reach_mm (what lies far behind is lit from the side again).
-    shadow_steps, shadow_step_mm: reach of cast shadows. shininess: exponent of the
-    highlight. gloss_*: its strength per unit of a tone's gloss (sleeve: absolute).
-    """
-
-    wrap_bgr: tuple[float, float, float] = (0.12, 0.2, 0.45)
-    smooth_mm: float = 3.2
-    occlusion_mm: tuple[float, float] = (3.5, 11.0)
-    occlusion_per_mm: tuple[float, float] = (0.12, 0.03)
-    occlusion_reach_mm: tuple[float, float] = (3.2, 9.0)
-    occlusion_bgr: tuple[float, float, float] = (1.08, 1.05, 0.92)
-    shadow_steps: int = 5
-    shadow_step_mm: float = 5.0
-    shininess: int = 22
-    gloss_skin: float = 0.16
-    gloss_nail: float = 0.45
-    gloss_sleeve: float = 0.03
+def triple(values: NDArray[np.floating]) -> tuple[float, float, float]:
+    """A colour as plain numbers."""
+    return float(values[0]), float(values[1]), float(values[2])
 
 
-SETTINGS = ShadingSettings()
+def draw_light(rng: np.random.Generator, water: Water | None) -> Light:
+    """A light from above or the side, warm or cold in air, as the water leaves it below."""
+    angle = rng.uniform(-1.3, 1.3)
+    direction = (
+        float(np.sin(angle)),
+        float(-np.cos(angle)) * float(rng.uniform(0.3, 1.0)),
+        float(rng.uniform(0.15, 1.0)),
+    )
+    colour = water.light if water is not None else rng.uniform([0.7, 0.85, 0.9], [1.0, 1.0, 1.0])
+    strength = float(np.exp(rng.uniform(-1.2, 0.1)))
+    share = float(rng.uniform(0.25, 0.7))
+    key, sky, ground = (
+        colour * strength * part for part in (1.0 - share, share * 0.9, share * rng.uniform(0.3, 0.8))
+    )
+    return Light(direction, triple(key), triple(sky), triple(ground), float(rng.uniform(0.2, 0.75)))
+
+
+def daylight(water: Water, direction: tuple[float, float, float], strength: float = 1.0) -> Light:
+    """Daylight that comes down through the water, and what the water scatters from around."""
+    return Light(
+        direction=direction,
+        key=triple(water.light * np.float32(0.85 * strength)),
+        sky=triple(water.light * np.float32(0.42 * strength)),
+        ground=triple(water.veil * np.float32(0.7)),
+        shadow=0.45,
+    )
+
+
+# The skin's response; lengths in millimetres.
+WRAP_BGR: Final = (0.12, 0.2, 0.45)
+"""How far diffuse light wraps beyond the terminator."""
+SMOOTH_MM: Final = 3.2
+"""Smoothing of the flesh of palm and forearm."""
+OCCLUSION: Final = ((3.5, 0.12, 3.2), (11.0, 0.03, 9.0))
+"""Radius of a blur of the depth, darkening per millimetre below it, and the depth up to which it darkens: what lies far
+behind is lit from the side again."""
+OCCLUSION_BGR: Final = (1.08, 1.05, 0.92)
+"""Share of the darkening that each channel has."""
+SHADOW_STEPS: Final = 5
+SHADOW_STEP_MM: Final = 5.0
+"""Length of each of so many steps, which together are the reach of a cast shadow."""
+SHININESS: Final = 22
+"""Exponent of the highlight."""
+GLOSS_SKIN: Final = 0.16
+"""Strength of the highlight per unit of a tone's gloss."""
+GLOSS_NAIL: Final = 0.45
+"""The same of a nail."""
+GLOSS_SLEEVE: Final = 0.03
+"""Strength of the highlight itself."""
 
 
 def soften(canvas: Canvas, mask: Mask, sigma: float) -> None:
@@ -85,13 +115,12 @@ def soften(canvas: Canvas, mask: Mask, sigma: float) -> None:
         canvas.normal[axis] += share * (value - canvas.normal[axis])
 
 
-def occlusion(height: Float32, mask: Mask, px_per_mm: float, settings: ShadingSettings = SETTINGS) -> Float32:
+def occlusion(height: Float32, mask: Mask, px_per_mm: float) -> Float32:
     """Darkening 0..1 of points that lie below their surroundings."""
     weight = mask.astype(np.float32)
     depth = np.where(mask, height, np.float32(0.0))
     dark = np.zeros_like(height)
-    scales = zip(settings.occlusion_mm, settings.occlusion_per_mm, settings.occlusion_reach_mm, strict=True)
-    for radius, strength, reach in scales:
+    for radius, strength, reach in OCCLUSION:
         size = (2 * int(radius * px_per_mm) + 1,) * 2
         mean = cv2.blur(cv2.blur(depth, size), size) / np.maximum(
             cv2.blur(cv2.blur(weight, size), size), 1e-3
@@ -101,15 +130,13 @@ def occlusion(height: Float32, mask: Mask, px_per_mm: float, settings: ShadingSe
     return np.asarray(np.clip(dark, 0.0, 0.85) * weight, np.float32)
 
 
-def cast_shadow(
-    height: Float32, light: Light, px_per_mm: float, settings: ShadingSettings = SETTINGS
-) -> Float32:
+def cast_shadow(height: Float32, light: Light, px_per_mm: float) -> Float32:
     """Soft shadow 0..1 by marching the height field towards the light."""
     lx, ly, lz = np.array(light.direction) / np.linalg.norm(light.direction)
     shadow = np.zeros_like(height)
     rows, columns = height.shape
-    for step in range(1, settings.shadow_steps + 1):
-        reach = step * settings.shadow_step_mm * px_per_mm
+    for step in range(1, SHADOW_STEPS + 1):
+        reach = step * SHADOW_STEP_MM * px_per_mm
         move = np.array([[1.0, 0.0, -lx * reach], [0.0, 1.0, -ly * reach]], np.float32)
         blocker = cv2.warpAffine(height, move, (columns, rows), flags=cv2.INTER_NEAREST, borderValue=-1e4)
         excess = (blocker - height - np.float32(lz * reach)) * np.float32(1.0 / (4.0 * px_per_mm))
@@ -128,10 +155,10 @@ def albedo(
     if not tone.glove:  # first order of the exponential: the change is small
         colour *= 1.0 - blood[:, None] * BLOOD_DENSITY_BGR.astype(np.float32)
     colour += nail[:, None] * (tone.nail - colour)
-    gloss = tone.gloss * (SETTINGS.gloss_skin * (1.0 - 0.3 * palm) + SETTINGS.gloss_nail * nail)
+    gloss = tone.gloss * (GLOSS_SKIN * (1.0 - 0.3 * palm) + GLOSS_NAIL * nail)
     sleeve = canvas.material.reshape(-1)[pixels] == SLEEVE
     colour[sleeve] = sleeve_bgr
-    gloss[sleeve] = SETTINGS.gloss_sleeve
+    gloss[sleeve] = GLOSS_SLEEVE
     colour *= factor[:, None]
     return np.asarray(colour, np.float32), np.asarray(gloss, np.float32)
 
@@ -142,10 +169,10 @@ def shade(
     """Radiance (h, w, 3), linear BGR, of everything on the canvas; black elsewhere."""
     mask = canvas.material > 0
     soft_skin = (canvas.atlas[1] < LAYOUT.palm_height) & (canvas.material == HAND)
-    soften(canvas, soft_skin | (canvas.material == FOREARM), SETTINGS.smooth_mm * px_per_mm)
+    soften(canvas, soft_skin | (canvas.material == FOREARM), SMOOTH_MM * px_per_mm)
     sleeve = canvas.material == SLEEVE
     if sleeve.any():
-        soften(canvas, sleeve, SETTINGS.smooth_mm * px_per_mm)
+        soften(canvas, sleeve, SMOOTH_MM * px_per_mm)
     pixels = np.flatnonzero(mask)
     closed = occlusion(canvas.height, mask, px_per_mm).reshape(-1)[pixels]
     reach = 1.0 - np.float32(light.shadow) * cast_shadow(canvas.height, light, px_per_mm).reshape(-1)[pixels]
@@ -169,15 +196,15 @@ def reflected(
     half = towards + np.array([0.0, 0.0, 1.0], np.float32)
     half /= np.float32(np.linalg.norm(half))
     facing: Float32 = np.clip(half @ normal, 0.0, 1.0).astype(np.float32)
-    highlight = gloss * _power(facing, SETTINGS.shininess) * reach * (1.0 - closed)
+    highlight = gloss * _power(facing, SHININESS) * reach * (1.0 - closed)
     radiance = np.empty_like(colour)
     for channel in range(3):
-        wrap, key = SETTINGS.wrap_bgr[channel], np.float32(light.key[channel])
+        wrap, key = WRAP_BGR[channel], np.float32(light.key[channel])
         diffuse = np.clip((lit + np.float32(wrap)) * np.float32(1.0 / (1.0 + wrap)), 0.0, 1.0) * reach
         ambient = np.float32(light.ground[channel]) + up * np.float32(
             light.sky[channel] - light.ground[channel]
         )
-        total = (diffuse * key + ambient) * (1.0 - np.float32(SETTINGS.occlusion_bgr[channel]) * closed)
+        total = (diffuse * key + ambient) * (1.0 - np.float32(OCCLUSION_BGR[channel]) * closed)
         radiance[:, channel] = colour[:, channel] * total + highlight * key
     return np.maximum(radiance, 0.0)
 

@@ -5,7 +5,7 @@ the water's surface.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -18,29 +18,28 @@ from lightgesture.synth.water import Water
 FIXED_POINT_BITS = 4
 
 
-@dataclass(frozen=True, slots=True)
-class SpeckSettings:
-    """Lengths in millimetres, speeds in mm/s.
-
-    near, far: range of particles. size: their radius. drift: their speed. bubble_radius: smallest and largest.
-    rise: speed of bubbles (small bubbles reach 0.2 to 0.35 m/s, Clift, Grace & Weber, "Bubbles, drops, and
-    particles", 1978, ch. 7). breath_s: one breath; bubbles leave in its first part `exhale`. brightness: of a speck
-    against the light.
-    """
-
-    near: float = 250.0
-    far: float = 2500.0
-    size: tuple[float, float] = (0.4, 1.6)
-    drift: float = 40.0
-    bubble_radius: tuple[float, float] = (3.0, 16.0)
-    rise: float = 280.0
-    breath_s: float = 4.0
-    exhale: float = 0.4
-    life_s: float = 3.0
-    brightness: float = 0.5
-
-
-SETTINGS = SpeckSettings()
+# Lengths in millimetres, speeds in mm/s.
+NEAR: Final = 250.0
+FAR: Final = 2500.0
+"""Range of particles before the camera."""
+SIZE: Final = (0.4, 1.6)
+"""Smallest and largest radius of a particle."""
+DRIFT: Final = 40.0
+"""Speed of particles, standard deviation."""
+BRIGHTNESS: Final = 0.5
+"""Of a particle against the light."""
+BUBBLE_RADIUS: Final = (3.0, 16.0)
+"""Smallest and largest."""
+RISE: Final = 280.0
+"""Speed of bubbles; small ones reach 0.2 to 0.35 m/s (Clift, Grace & Weber, "Bubbles, drops, and particles", 1978,
+ch. 7)."""
+BREATH_S: Final = 4.0
+EXHALE: Final = 0.4
+"""Share of a breath, its first part, in which bubbles leave."""
+LIFE_S: Final = 3.0
+"""Of a bubble."""
+MIRRORED: Final = 0.6
+"""Brightness of the diver's image in the surface against the diver's own: at shallow angles nearly all is reflected."""
 
 
 class Particles:
@@ -48,12 +47,12 @@ class Particles:
 
     def __init__(self, count: int, camera: Camera, size: tuple[int, int], rng: np.random.Generator) -> None:
         self._camera, self._size = camera, size
-        depth = SETTINGS.near + (SETTINGS.far - SETTINGS.near) * rng.uniform(0.0, 1.0, count) ** 0.6
+        depth = NEAR + (FAR - NEAR) * rng.uniform(0.0, 1.0, count) ** 0.6
         reach = np.column_stack([0.7 * depth * size[0], 0.7 * depth * size[1]]) / camera.focal
         self._depth, self._reach = depth, reach
         self._start = rng.uniform(-1.0, 1.0, (count, 2)) * reach
-        self._speed = rng.normal(0.0, SETTINGS.drift, (count, 2)) + np.array([0.0, -0.3 * SETTINGS.drift])
-        self._radius = rng.uniform(*SETTINGS.size, count)
+        self._speed = rng.normal(0.0, DRIFT, (count, 2)) + np.array([0.0, -0.3 * DRIFT])
+        self._radius = rng.uniform(*SIZE, count)
         self._strength = rng.uniform(0.2, 1.0, count)
 
     def draw(self, picture: Float32, time_s: float, water: Water) -> None:
@@ -68,7 +67,7 @@ class Particles:
         for (x, y, r), strength in zip(spots, self._strength.tolist(), strict=True):
             cv2.circle(layer, (x, y), r, strength, -1, cv2.LINE_AA, FIXED_POINT_BITS)
         layer = np.asarray(cv2.resize(cv2.GaussianBlur(layer, (0, 0), 0.8), self._size), np.float32)
-        picture += layer[..., None] * (water.light * np.float32(SETTINGS.brightness))
+        picture += layer[..., None] * (water.light * np.float32(BRIGHTNESS))
 
 
 class Bubbles:
@@ -82,9 +81,9 @@ class Bubbles:
     def at(self, time_s: float, mouth: FloatArray) -> Iterator[tuple[FloatArray, float, float]]:
         """Camera point (3,), radius in mm and age share 0..1 of each bubble; `mouth`: camera point of the regulator."""
         last = int(time_s * self._rate)
-        for number in range(last, last - int(SETTINGS.life_s * self._rate) - 1, -1):
+        for number in range(last, last - int(LIFE_S * self._rate) - 1, -1):
             born = number / self._rate
-            if number < 0 or (born / SETTINGS.breath_s + self._phase) % 1.0 > SETTINGS.exhale:
+            if number < 0 or (born / BREATH_S + self._phase) % 1.0 > EXHALE:
                 continue
             a, b, c, d, e = self._random[number % len(self._random)]
             age = time_s - born
@@ -93,12 +92,12 @@ class Bubbles:
             spread = np.array(
                 [
                     (b - 0.5) * 90.0 * age + wobble + side,
-                    SETTINGS.rise * (0.7 + 0.6 * c) * age,
+                    RISE * (0.7 + 0.6 * c) * age,
                     (e - 0.5) * 120.0,
                 ]
             )
-            low, high = SETTINGS.bubble_radius
-            yield mouth + spread, low + (high - low) * a**3, age / SETTINGS.life_s
+            low, high = BUBBLE_RADIUS
+            yield mouth + spread, low + (high - low) * a**3, age / LIFE_S
 
     def draw(self, picture: Float32, time_s: float, mouth: FloatArray, water: Water) -> None:
         """Draw rings with a highlight (in place)."""
@@ -118,9 +117,7 @@ class Bubbles:
             window += (0.35 * rim + 0.6 * spot)[..., None] * water.light
 
 
-def mirror_in_surface(
-    picture: Float32, cover: Float32, line: float, ripples: Float32, time_s: float, strength: float = 0.6
-) -> None:
+def mirror_in_surface(picture: Float32, cover: Float32, line: float, ripples: Float32, time_s: float) -> None:
     """Lay the diver's image, mirrored about row `line` and broken by ripples, over the surface above it (in place).
 
     cover (h, w): where the diver is. ripples: tileable noise. At shallow angles the surface reflects totally, so the
@@ -142,6 +139,6 @@ def mirror_in_surface(
     source_x, source_y = source_x.astype(np.float32), np.clip(source_y, 0, height - 1).astype(np.float32)
     image = np.asarray(cv2.remap(picture, source_x, source_y, cv2.INTER_LINEAR), np.float32)
     seen = np.asarray(cv2.remap(cover, source_x, source_y, cv2.INTER_LINEAR), np.float32)
-    seen *= np.float32(strength) * np.clip(1.0 - 0.45 * wave, 0.0, 1.0)
+    seen *= np.float32(MIRRORED) * np.clip(1.0 - 0.45 * wave, 0.0, 1.0)
     top = picture[:rows]
     top += seen[..., None] * (image - top)

@@ -19,12 +19,13 @@ def periodic_noise(rng: np.random.Generator, size: int, roughness: float = 1.6) 
     return np.asarray(field / field.std(), np.float32)
 
 
-def caustics(rng: np.random.Generator, size: int, octave: int = 6) -> Float32:
+def caustics(rng: np.random.Generator, size: int) -> Float32:
     """Tileable net of light (size, size), mean 1: thin bright lines around dark cells.
 
     Caustics are where the refracting surface's curvature focuses light; the ridges (values near zero) of smooth
     noise fields have the same look, and two that move against each other shimmer like them.
     """
+    octave = 6  # cells across the tile
     frequency = np.fft.fftfreq(size, 1.0 / size)
     radius = np.hypot(frequency[:, None], frequency[None, :])
     band = np.exp(-(((radius - octave) / (0.35 * octave)) ** 2))

@@ -18,6 +18,7 @@ from lightgesture.synth.spec import (
     SceneSpec,
     WaterSpec,
 )
+from lightgesture.synth.water import WaterRange
 
 Purpose = Literal["demo", "train", "suite"]
 _PURPOSE_KEYS: dict[Purpose, int] = {"demo": 1, "train": 2, "suite": 3}
@@ -85,15 +86,14 @@ def draw_spec(
 
 
 def _water(rng: np.random.Generator, difficulty: float) -> WaterSpec:
-    kinds = ("I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C")
-    weights = np.array([1, 1, 4, 3, 3, 2, 2, 1, difficulty])
-    return WaterSpec.model_validate(
-        {
-            "kind": str(rng.choice(kinds, p=weights / weights.sum())),
-            "depth_m": float(rng.uniform(0.6, 8.0)),
-            "turbidity": float(np.exp(rng.uniform(np.log(0.05), np.log(0.15 + 0.75 * difficulty)))),
-        }
+    waters = WaterRange(
+        kinds=("I", "IA", "IB", "II", "III", "1C", "3C", "5C", "7C"),
+        weights=(1, 1, 4, 3, 3, 2, 2, 1, difficulty),
+        depth_m=(0.6, 8.0),
+        turbidity=(0.05, 0.15 + 0.75 * difficulty),
     )
+    kind, depth_m, turbidity = waters.draw(rng)
+    return WaterSpec.model_validate({"kind": kind, "depth_m": depth_m, "turbidity": turbidity})
 
 
 def _backdrop(rng: np.random.Generator, distance_mm: float) -> BackdropSpec:

@@ -2,11 +2,12 @@
 
 import argparse
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from lightgesture.benchmarks.commands import evaluate_regions
+from lightgesture.benchmarks.progress import progress_bar
 from lightgesture.console import native_messages_muted, print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 HANDS, REGIONS, SUITE = "hands", "regions", "suite"
 TARGETS = (HANDS, REGIONS, SUITE)
 DEFAULT_MODEL = "cnn"
-Item = TypeVar("Item")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -101,18 +101,19 @@ def run_pictures(args: argparse.Namespace) -> int:
 
 def reports(args: argparse.Namespace, targets: "Sequence[str]", data: Path) -> "Iterator[tuple[Report, str]]":
     """What was asked for, one after the other, with the kind of picture that its failures are drawn to."""
-    from lightgesture.benchmarks import accuracy, reading_report
+    from lightgesture.benchmarks import accuracy
+    from lightgesture.benchmarks.reading import report as reading_report
 
     is_reading = args.target != REGIONS or args.model is not None
     models = named_models(args) if is_reading else {}
     if models and HANDS in targets:
-        yield reading_report.evaluate_reading(models, data, show_progress), ".jpg"
+        yield reading_report.evaluate_reading(models, data, progress_bar), ".jpg"
     if REGIONS in targets:
-        for report in evaluate_regions.find_hands(args, data, show_progress):
+        for report in evaluate_regions.find_hands(args, data, progress_bar):
             yield report, ".png"
         for model, classifier in models.items():
             methods = accuracy.default_methods(classifier, model, data)
-            yield accuracy.evaluate_regions(methods, data, show_progress), ".jpg"
+            yield accuracy.evaluate_regions(methods, data, progress_bar), ".jpg"
 
 
 def named_models(args: argparse.Namespace) -> "dict[str, Classifier]":
@@ -127,20 +128,22 @@ def named_models(args: argparse.Namespace) -> "dict[str, Classifier]":
 
 def run_suite(args: argparse.Namespace) -> int:
     """Render or fetch the clips, decode and score them; 0 when all was done."""
-    from lightgesture.benchmarks import suite, suite_tables
     from lightgesture.benchmarks.accuracy import default_methods
-    from lightgesture.benchmarks.suite_cache import cache_folder
-    from lightgesture.benchmarks.suite_scenarios import SUITES
+    from lightgesture.benchmarks.suite import run as suite
+    from lightgesture.benchmarks.suite import tables as suite_tables
+    from lightgesture.benchmarks.suite import takes as suite_takes
+    from lightgesture.benchmarks.suite.cache import cache_folder
+    from lightgesture.benchmarks.suite.scenarios import SUITES
 
     data = suite_data(args.data)
-    takes = [take for name in SUITES for take in suite.takes_of(name, data)]
+    takes = [take for name in SUITES for take in suite_takes.takes_of(name, data)]
     known = {*SUITES, *(take.scenario.name for take in takes)}
     if unknown := [name for name in args.only or () if name not in known]:
         raise UsageError(f"--only {unknown[0]}: no such part or clip; parts are {', '.join(SUITES)}")
     ((model, classifier),) = named_models(args).items()
     methods = default_methods(classifier, model, data, evaluate_regions.named_selectors(args))
-    chosen = suite.choose_takes(takes, args.only or (), args.quick)
-    answers = suite.run_suite(methods, chosen, cache_folder(), show_progress, args.jobs)
+    chosen = suite_takes.choose_takes(takes, args.only or (), args.quick)
+    answers = suite.run_suite(methods, chosen, cache_folder(), progress_bar, args.jobs)
     print_tables(suite_tables.all_tables(answers, methods[0].name), args.json)
     if args.out:
         for path in suite.save_tiles(answers, Path(args.out), say):
@@ -176,11 +179,3 @@ def print_tables(tables: "Sequence[Table]", as_json: bool, is_first: bool = True
                 print_line(json.dumps(row, ensure_ascii=False))
     else:
         print_line(("" if is_first else "\n") + to_text(tables))
-
-
-def show_progress(items: "Iterable[Item]", heading: str) -> "Iterable[Item]":
-    """Pass items on behind a progress bar on stderr; silent where stderr is no terminal."""
-    from tqdm import tqdm
-
-    bar: Iterable[Item] = tqdm(items, desc=heading, leave=False, disable=None)
-    return bar

@@ -3,25 +3,17 @@
 import argparse
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING
 
+from lightgesture.benchmarks.progress import Progress
 from lightgesture.console import say
 from lightgesture.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from lightgesture.benchmarks.accuracy import Report
     from lightgesture.features.find.selector import SelectorName
-
-Item = TypeVar("Item")
-
-
-class Progress(Protocol):
-    """Passes items on and shows how far they are, under a heading."""
-
-    def __call__(self, items: "Iterable[Item]", heading: str, /) -> "Iterable[Item]": ...
-
 
 OPTIONS = ("selector", "fold", "compare", "clips", "ablation")
 """Options that only this target has."""
@@ -72,7 +64,7 @@ def named_selectors(args: argparse.Namespace) -> "Sequence[SelectorName]":
     return [selector for name in named for selector in SELECTORS if selector == name]
 
 
-def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":
+def find_hands(args: argparse.Namespace, data: Path, progress: Progress) -> "Iterator[Report]":
     """Score the finding of hands, one report after the other. UsageError: a selector file is damaged."""
     from lightgesture.features.find.selector_file import SelectorError
 
@@ -82,9 +74,9 @@ def find_hands(args: argparse.Namespace, data: Path, progress: "Progress") -> "I
         raise UsageError(str(error)) from error
 
 
-def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Iterator[Report]":
-    from lightgesture.benchmarks.finding_report import FindingRequest, evaluate_finding
-    from lightgesture.benchmarks.suite_cache import cache_folder
+def _reports(args: argparse.Namespace, data: Path, progress: Progress) -> "Iterator[Report]":
+    from lightgesture.benchmarks.finding.report import FindingRequest, evaluate_finding
+    from lightgesture.benchmarks.suite.cache import cache_folder
     from lightgesture.features.find.selector import SELECTORS
 
     selectors = args.selector or SELECTORS
@@ -96,10 +88,10 @@ def _reports(args: argparse.Namespace, data: Path, progress: "Progress") -> "Ite
     )
     yield evaluate_finding(request, data, progress, say)
     if args.clips:
-        from lightgesture.benchmarks.finding_clips import evaluate_clips
+        from lightgesture.benchmarks.finding.clips import evaluate_clips
 
         yield evaluate_clips(selectors, cache_folder(), progress, args.jobs, args.quick)
     if args.ablation:
-        from lightgesture.benchmarks.ablation import evaluate_ablation
+        from lightgesture.benchmarks.finding.ablation import evaluate_ablation
 
         yield evaluate_ablation(data, progress, cache_folder() if args.clips else None, args.jobs)

@@ -2,32 +2,57 @@
 
 The fourth step of Islam, Ho and Sattar, "Dynamic Reconfiguration of Mission Parameters in Underwater Human-Robot
 Collaboration" (ICRA 2018), chooses hands by their distance to such a bank. They compare Hu moments contour by contour;
-here every outline is a short vector (`descriptors`), so that all distances are one matrix product. Beside the hands the
-bank holds outlines of other things: being near to a hand says little unless it is farther from them.
+here every outline is a short vector, so that all distances are one matrix product. Beside the hands the bank holds
+outlines of other things: being near to a hand says little unless it is farther from them.
+
+The vectors are Fourier descriptors: Persoon and Fu, "Shape Discrimination Using Fourier Descriptors", IEEE Transactions
+on Systems, Man, and Cybernetics 7(3), 1977. The points of a closed outline are a periodic complex function, and its low
+frequencies are its coarse shape. Place and size are divided out. Orientation is kept, because raised hands have their
+fingers above: with it, hands are told from other things much better than without.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.descriptors import (
-    Contour,
-    DescriptorSettings,
-    Float,
-    describe_outlines,
-    mirrored,
-)
+Contour = NDArray[np.int32]
+Float = NDArray[np.float32]
 
-OTHER = "other"
+OTHER: Final = "other"
 """Name of the class of outlines that are no hands."""
-
-OTHER_TIMES = 4
+OTHER_TIMES: Final = 4
 """Centres of other things for one of each hand class: they are far more varied than one sign."""
-
-ROUNDS = 30
+ROUNDS: Final = 30
 """Most rounds of k-means; it settles in fewer."""
+SMALLEST_SPREAD: Final = 1e-6
+"""Pixels; outlines spread less than this round their centre are points and are not enlarged to size 1."""
+MOST_CENTRES: Final = 4096
+"""Of what a file may hold."""
+LONGEST_DESCRIPTOR: Final = 256
+"""Numbers of one descriptor that a file may hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class DescriptorSettings:
+    """How outlines are described. Raises ValueError outside the ranges."""
+
+    points: int = 32
+    """Points taken from each outline, 8 to 256; the cost grows with them."""
+    harmonics: int = 8
+    """Frequencies kept each way round, 1 to points / 2 - 1: more tell finer bends apart."""
+
+    def __post_init__(self) -> None:
+        if not (8 <= self.points <= 256 and 1 <= self.harmonics < self.points / 2):
+            raise ValueError(f"{self.points} points and {self.harmonics} harmonics do not make a descriptor")
+
+    @property
+    def length(self) -> int:
+        """Numbers that describe one outline: two parts of a coefficient for each frequency each way round."""
+        return 4 * self.harmonics
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,6 +113,50 @@ def hand_proximity(distances: Float, bank: Bank) -> Float:
     return np.asarray(np.where(both > 0.0, other / np.maximum(both, 1e-9), 0.5), np.float32)
 
 
+def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings | None = None) -> Float:
+    """Descriptors, float32 (n, settings.length): real parts of all frequencies, then imaginary ones.
+
+    contours: closed outlines pixel by pixel (CHAIN_APPROX_NONE), int32 (k, 2), k of at least 1, as OpenCV walks
+    round regions. Moved, enlarged: the same. Mirrored (and walked in the same sense): imaginary parts keep, real
+    parts turn their sign. Turned: others. The outline starts at its highest point, so that where it was begun does
+    not matter.
+    """
+    settings = settings or DescriptorSettings()
+    if not contours:
+        return np.zeros((0, settings.length), np.float32)
+    x, y = _sample(contours, settings.points)
+    x -= x.mean(axis=1, keepdims=True)
+    y -= y.mean(axis=1, keepdims=True)
+    spread = np.sqrt((np.square(x) + np.square(y)).mean(axis=1, keepdims=True))
+    start = y.argmin(axis=1)
+    transform, shifts = _transform(settings)
+    coefficients = (np.concatenate([x, y], axis=1) / np.maximum(spread, SMALLEST_SPREAD)) @ transform
+    real, imaginary = coefficients[:, : 2 * settings.harmonics], coefficients[:, 2 * settings.harmonics :]
+    cosine, sine = shifts[0][start], shifts[1][start]
+    return np.concatenate([real * cosine - imaginary * sine, real * sine + imaginary * cosine], axis=1)
+
+
+def _sample(contours: Sequence[Contour], count: int) -> tuple[Float, Float]:
+    """`count` points of each outline, evenly spaced among its own: x and y, float32 (n, count)."""
+    lengths = np.array([len(contour) for contour in contours])
+    first = np.cumsum(lengths) - lengths
+    chosen = first[:, None] + lengths[:, None] * np.arange(count) // count
+    points = np.concatenate(contours)[chosen].astype(np.float32)
+    return points[..., 0].copy(), points[..., 1].copy()
+
+
+@lru_cache(maxsize=4)
+def _transform(settings: DescriptorSettings) -> tuple[Float, Float]:
+    """The Fourier transform as a real matrix, float32 (2 points, 4 harmonics), and the cosines and sines that begin
+    the outline at another of its points, float32 (2, points, 2 harmonics)."""
+    kept = np.arange(1, settings.harmonics + 1)
+    frequencies = np.concatenate([kept, -kept])
+    angles = np.outer(np.arange(settings.points), frequencies) * (2 * np.pi / settings.points)
+    cosine, sine = np.cos(angles), np.sin(angles)
+    matrix = np.block([[cosine, -sine], [sine, cosine]]) / settings.points
+    return matrix.astype(np.float32), np.stack([cosine, sine]).astype(np.float32)
+
+
 def build_bank(
     contours_by_class: Mapping[str, Sequence[Contour]],
     per_class: int,
@@ -144,3 +213,34 @@ def k_means(points: Float, count: int, rng: "np.random.Generator") -> Float:
         # A centre that lost its last point stays where it was.
         centres = np.where(sizes > 0, sums / np.maximum(sizes, 1), centres)
     return np.asarray(centres, np.float32)
+
+
+def mirrored(descriptors: Float) -> Float:
+    """Descriptors of the same outlines flipped left to right, float32 (n, settings.length)."""
+    half = descriptors.shape[1] // 2
+    return np.concatenate([-descriptors[:, :half], descriptors[:, half:]], axis=1)
+
+
+def bank_arrays(prefix: str, bank: Bank) -> dict[str, NDArray[Any]]:
+    """All that a bank holds, under names that begin with `prefix`."""
+    return {
+        f"{prefix}_classes": np.array(bank.classes, np.str_),
+        f"{prefix}_centres": bank.centres.astype(np.float32),
+        f"{prefix}_owner": bank.owner.astype(np.int16),
+        f"{prefix}_points": np.array(bank.settings.points, np.int32),
+        f"{prefix}_harmonics": np.array(bank.settings.harmonics, np.int32),
+    }
+
+
+def bank_from(arrays: Mapping[str, NDArray[Any]], prefix: str) -> Bank:
+    """The bank that `bank_arrays` stored. Raises KeyError or ValueError."""
+    centres = arrays[f"{prefix}_centres"]
+    if centres.ndim != 2 or len(centres) > MOST_CENTRES or centres.shape[1] > LONGEST_DESCRIPTOR:
+        raise ValueError(f"centres of shape {centres.shape} are no bank")
+    settings = DescriptorSettings(int(arrays[f"{prefix}_points"]), int(arrays[f"{prefix}_harmonics"]))
+    return Bank(
+        classes=tuple(str(name) for name in arrays[f"{prefix}_classes"]),
+        centres=centres.astype(np.float32),
+        owner=arrays[f"{prefix}_owner"].astype(np.int16),
+        settings=settings,
+    )

@@ -5,7 +5,7 @@ cells of the widened box through integral images, as in Dollár, Tu, Perona and 
 Channel Features", 2009: a box costs the same whatever its size.
 """
 
-from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -16,23 +16,15 @@ from lightgesture.features.find.proposals import Proposals
 
 Float = NDArray[np.float32]
 
-
-@dataclass(frozen=True, slots=True)
-class CellSettings:
-    """The grid over a proposal.
-
-    cells: along each side of the widened box. context: side of the widened box over the side of the
-        region's own box, so that the grid sees what stands around a hand.
-    """
-
-    cells: int = 6
-    context: float = 1.4
-
-
-DIRECTIONS = 4
+CELLS: Final = 6
+"""Along each side of the widened box."""
+CONTEXT: Final = 1.4
+"""Side of the widened box over the side of the region's own, so that the grid sees what stands around a hand."""
+DIRECTIONS: Final = 4
 """Gradient directions over half a turn."""
-SHAPE_NUMBERS = 9
-COLUMNS = (3 + DIRECTIONS) * CellSettings().cells ** 2 + SHAPE_NUMBERS
+SHAPE_NUMBERS: Final = 9
+"""Place, size and outline of a region."""
+COLUMNS: Final = (3 + DIRECTIONS) * CELLS**2 + SHAPE_NUMBERS
 """Numbers of one proposal."""
 
 
@@ -50,14 +42,14 @@ def channels(colour: ColourMap) -> Float:
     return np.stack([luma, colour.skin.astype(np.float32) / 255.0, magnitude, *directed]).astype(np.float32)
 
 
-def _cell_means(stack: Float, boxes: NDArray[np.int32], settings: CellSettings) -> Float:
+def _cell_means(stack: Float, boxes: NDArray[np.int32]) -> Float:
     """Mean of each channel in each cell: float32 (n, channels, cells, cells). Outside the picture counts
     as not there: a cell's mean is over its visible part, 0 where there is none."""
     height, width = stack.shape[1:]
     integrals = np.zeros((stack.shape[0], height + 1, width + 1), np.float64)
     for index, channel in enumerate(stack):
         integrals[index] = cv2.integral(channel, sdepth=cv2.CV_64F)
-    steps = np.linspace(-0.5, 0.5, settings.cells + 1) * settings.context
+    steps = np.linspace(-0.5, 0.5, CELLS + 1) * CONTEXT
     centre = boxes[:, :2] + boxes[:, 2:] / 2.0
     columns = np.rint(centre[:, :1] + boxes[:, 2:3] * steps).astype(np.int64).clip(0, width)
     rows = np.rint(centre[:, 1:] + boxes[:, 3:4] * steps).astype(np.int64).clip(0, height)
@@ -91,16 +83,15 @@ def _shapes(proposals: Proposals, size: tuple[int, int]) -> Float:
     ).astype(np.float32)
 
 
-def describe(colour: ColourMap, proposals: Proposals, settings: CellSettings | None = None) -> Float:
+def describe(colour: ColourMap, proposals: Proposals) -> Float:
     """float32 (n, 7 × cells² + 9): one row for each proposal.
 
     Luma is taken relative to the box's own mean and spread, gradients relative to the box's mean
     gradient, so that neither exposure nor veil moves the numbers; skin stays as it is.
     """
-    settings = settings or CellSettings()
     if not len(proposals):
         return np.zeros((0, COLUMNS), np.float32)
-    means = _cell_means(channels(colour), proposals.boxes, settings)
+    means = _cell_means(channels(colour), proposals.boxes)
     luma = means[:, :1]
     centred = luma - luma.mean(axis=(2, 3), keepdims=True)
     luma = centred / (luma.std(axis=(2, 3), keepdims=True) + np.float32(0.01))

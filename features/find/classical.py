@@ -5,6 +5,7 @@ contours. Selected by `--selector classical`, and the baseline of every table.
 """
 
 from collections.abc import Sequence
+from typing import Final
 
 import cv2
 import numpy as np
@@ -13,20 +14,21 @@ from numpy.typing import NDArray
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
 from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
-from lightgesture.features.find.pairs import Candidate, score_pairs
-from lightgesture.features.find.proposals import Proposals, propose
+from lightgesture.features.find.candidates import Candidate, best_distinct, score_pairs
+from lightgesture.features.find.proposals import Proposals, fill_contour, propose
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
-from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import evaluate
-from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
-from lightgesture.features.outline.wrist import fill_contour
-from lightgesture.features.types import Box, Candidates, HandRegion
+from lightgesture.features.geometry import pairwise_iou, scale_boxes
+from lightgesture.features.types import Candidates, HandRegion
 
 Float = NDArray[np.float32]
 
-
-COLUMNS = cells.COLUMNS + BANK_NUMBERS
+COLUMNS: Final = cells.COLUMNS + BANK_NUMBERS
 """Numbers of one region."""
+ALTERNATIVES: Final = 3
+"""Most other extents kept with a candidate; each is one more patch to read."""
+ALTERNATIVE_IOU: Final = 0.35
+"""Least overlap of another extent with the candidate."""
 
 
 def describe_regions(colour: ColourMap, proposals: Proposals, bank: Bank) -> Float:
@@ -54,27 +56,23 @@ def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float)
 
 
 def scored_candidates(
-    colour: ColourMap, proposals: Proposals, scores: NDArray[np.float32], settings: SelectorSettings
+    colour: ColourMap, proposals: Proposals, scores: Float
 ) -> tuple[list[int], list[Candidate]]:
     """Numbers of the proposals that go on to pairing, and what their pairs need."""
-    kept = best_distinct(proposals.boxes, scores, settings)
+    kept = best_distinct(pairwise_iou(proposals.boxes, proposals.boxes), scores)
     return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
 
 
-def _alternatives(
-    proposals: Proposals, scores: NDArray[np.float32], kept: Sequence[int], settings: SelectorSettings
-) -> list[list[int]]:
+def other_extents(proposals: Proposals, scores: Float, kept: Sequence[int]) -> list[list[int]]:
     """For each kept proposal the best of the others that overlap it most among the kept."""
     if not kept:
         return []
     overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
     nearest = overlap.argmax(axis=1)
     order = np.argsort(-scores, kind="stable")
-    near_enough = overlap.max(axis=1) >= settings.alternative_iou
+    near_enough = overlap.max(axis=1) >= ALTERNATIVE_IOU
     return [
-        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][
-            : settings.alternatives
-        ]
+        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][:ALTERNATIVES]
         for place, index in enumerate(kept)
     ]
 
@@ -83,21 +81,16 @@ def _region(
     colour: ColourMap, proposals: Proposals, index: int, score: float, extents: Sequence[int]
 ) -> HandRegion:
     """A proposal in source pixels."""
-
-    def box_of(number: int) -> Box:
-        x, y, width, height = (int(value) for value in proposals.boxes[number])
-        return scale_box((x, y, width, height), colour.scale, colour.source_size)
-
+    boxes = scale_boxes(proposals.boxes[[index, *extents]], colour.scale, colour.source_size)
     contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
-    confidence = float(np.clip(score, 0.0, 1.0))
-    return HandRegion(box_of(index), contour, None, confidence, tuple(box_of(number) for number in extents))
+    return HandRegion(boxes[0], contour, None, float(np.clip(score, 0.0, 1.0)), tuple(boxes[1:]))
 
 
 class ClassicalSelector:
     """Colour map -> candidates with scores, by trees on regions of the skin map."""
 
-    def __init__(self, parts: ClassicalParts, settings: SelectorSettings = CLASSICAL) -> None:
-        self._parts, self._settings = parts, settings
+    def __init__(self, parts: ClassicalParts) -> None:
+        self._parts = parts
 
     def process(self, colour: ColourMap) -> Candidates:
         """Score the regions of one frame. A frame without contrast gives no candidates."""
@@ -105,12 +98,11 @@ class ClassicalSelector:
         if not len(proposals):
             return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
         scores = evaluate(self._parts.regions, describe_regions(colour, proposals, self._parts.bank))
-        kept, items = scored_candidates(colour, proposals, scores, self._settings)
+        kept, items = scored_candidates(colour, proposals, scores)
         height, width = colour.picture.shape[:2]
-        together = score_pairs(self._parts.pairs, items, (width, height), None, self._settings.apart_iou)
-        others = _alternatives(proposals, scores, kept, self._settings)
+        together = score_pairs(self._parts.pairs, items, (width, height), None)
         regions = tuple(
             _region(colour, proposals, index, float(scores[index]), extents)
-            for index, extents in zip(kept, others, strict=True)
+            for index, extents in zip(kept, other_extents(proposals, scores, kept), strict=True)
         )
         return Candidates(regions, together, colour.source_size)

@@ -1,74 +1,69 @@
 """The learned choice: the locator says where hands are, the refiner looks again, trees weigh both."""
 
 from collections.abc import Sequence
+from typing import Final
 
 import cv2
 import numpy as np
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.find.choice import Refined, describe_places
-from lightgesture.features.find.locator import Locator
-from lightgesture.features.find.pairs import Candidate, score_pairs
-from lightgesture.features.find.peaks import Peaks, PeakSettings, find_peaks, logistic
-from lightgesture.features.find.refiner import Refiner
+from lightgesture.features.find.candidates import (
+    APART_IOU,
+    Candidate,
+    best_distinct,
+    describe_places,
+    score_pairs,
+)
+from lightgesture.features.find.locator import Locator, Peaks, find_peaks
+from lightgesture.features.find.refiner import Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
-from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
-from lightgesture.features.geometry import best_distinct, pairwise_iou, scale_box
+from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.standardise import Float, channel_tables
 from lightgesture.features.types import Box, Candidates, HandRegion
 
-INNER = 0.5
+INNER: Final = 0.5
 """Side of the middle of a box, over the box's, whose mean colour stands for the hand's."""
-TIGHTER = 0.08
+TIGHTER: Final = 0.08
 """By how much of its sides the other extent of a region is smaller: a hand reads more clearly in one or the other."""
-HAND_IOU = 0.8
+HAND_IOU: Final = 0.8
 """Mean IoU of refined boxes with the hands that they are of."""
-NO_OUTLINE = np.zeros((0, 2), np.int32)
+NO_OUTLINE: Final = np.zeros((0, 2), np.int32)
 
 
 class Places:
     """Both nets over a frame: places that may be hands, before anything is decided."""
 
-    def __init__(
-        self, locator: IntegerNetwork, refiner: IntegerNetwork, settings: PeakSettings | None = None
-    ) -> None:
-        self._locator, self._refiner = Locator(locator), Refiner(refiner)
-        self._settings = settings or PeakSettings()
+    def __init__(self, locator: IntegerNetwork, refiner: IntegerNetwork) -> None:
+        self._locator, self.refiner = Locator(locator), Refiner(refiner)
 
     def find(self, colour: ColourMap) -> tuple[Peaks, Refined]:
         """Peaks of the locator and what the refiner says of each."""
         tables = channel_tables(colour.picture)
-        peaks = find_peaks(self._locator.process(colour.picture, tables), self._settings)
-        return peaks, self._refiner.process(colour.detail, colour.detail_scale, peaks.boxes, tables)
-
-    def look_at(self, colour: ColourMap, boxes: Float) -> Refined:
-        """What the refiner says of boxes in working pixels, without a search."""
-        tables = channel_tables(colour.picture)
-        return self._refiner.process(colour.detail, colour.detail_scale, boxes, tables)
+        peaks = find_peaks(self._locator.process(colour.picture, tables))
+        return peaks, self.refiner.process(colour, peaks.boxes, tables)
 
 
 class LearnedSelector:
     """Colour map -> candidates with scores, by locator and refiner."""
 
-    def __init__(
-        self, parts: LearnedParts, settings: SelectorSettings = LEARNED, peaks: PeakSettings | None = None
-    ) -> None:
-        self._nets = Places(parts.locator, parts.refiner, peaks)
-        self._places, self._pairs, self._settings = parts.places, parts.pairs, settings
+    def __init__(self, parts: LearnedParts) -> None:
+        self._nets = Places(parts.locator, parts.refiner)
+        self._places, self._pairs = parts.places, parts.pairs
 
     def process(self, colour: ColourMap) -> Candidates:
         """Search the whole frame."""
         peaks, refined = self._nets.find(colour)
         size = colour.picture.shape[1], colour.picture.shape[0]
         scores = evaluate(self._places, describe_places(peaks, refined, size))
-        items = candidates_of(colour, peaks, refined, scores, self._settings)
-        together = score_pairs(self._pairs, items, size, peaks.face, self._settings.apart_iou)
-        face = None if peaks.face is None else scaled_point(peaks.face, colour.scale)
-        return Candidates(
-            tuple(region(colour, item.box, item.score) for item in items), together, colour.source_size, face
-        )
+        kept, items = scored_places(colour, peaks, refined, scores)
+        together = score_pairs(self._pairs, items, size, peaks.face)
+        found = regions_at(colour, refined.boxes[kept], scores[kept])
+        face = peaks.face
+        if face is not None:
+            face = face[0] * colour.scale[0], face[1] * colour.scale[1]
+        return Candidates(found, together, colour.source_size, face)
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates:
         """Look only at predicted boxes, source pixels: far quicker than a search, and blind for what is elsewhere.
@@ -78,34 +73,31 @@ class LearnedSelector:
         """
         scale = np.tile(np.array(colour.scale, np.float32), 2)
         predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
-        refined = self._nets.look_at(colour, predicted)
-        scores = np.float32(HAND_IOU) * logistic(refined.hand)
-        kept = best_distinct(refined.boxes, scores, self._settings)
-        own = refined.boxes[kept]
-        apart = pairwise_iou(own, own) <= self._settings.apart_iou
-        together = np.where(apart, np.minimum.outer(scores[kept], scores[kept]), 0.0).astype(np.float32)
-        regions = tuple(region(colour, refined.boxes[index], float(scores[index])) for index in kept)
-        return Candidates(regions, together, colour.source_size)
+        refined = self._nets.refiner.process(colour, predicted, channel_tables(colour.picture))
+        scores = np.asarray(np.float32(HAND_IOU) * (1.0 / (1.0 + np.exp(-refined.hand))), np.float32)
+        overlap = pairwise_iou(refined.boxes, refined.boxes)
+        kept = best_distinct(overlap, scores)
+        apart = overlap[np.ix_(kept, kept)] <= APART_IOU
+        scores = scores[kept]
+        together = np.where(apart, np.minimum.outer(scores, scores), 0.0).astype(np.float32)
+        return Candidates(regions_at(colour, refined.boxes[kept], scores), together, colour.source_size)
 
 
-def candidates_of(
-    colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float, settings: SelectorSettings
-) -> list[Candidate]:
-    """The distinct places, best first, with what their pairs need."""
-    return [
+def scored_places(
+    colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float
+) -> tuple[list[int], list[Candidate]]:
+    """Numbers of the distinct places, best first, and what their pairs need."""
+    kept = best_distinct(pairwise_iou(refined.boxes, refined.boxes), scores)
+    items = [
         Candidate(
             refined.boxes[index],
             float(scores[index]),
             float(peaks.heat[index]),
             mean_colour(colour, refined.boxes[index]),
         )
-        for index in best_distinct(refined.boxes, scores, settings)
+        for index in kept
     ]
-
-
-def scaled_point(point: tuple[float, float], scale: tuple[float, float]) -> tuple[float, float]:
-    """A point of the working picture in source pixels."""
-    return point[0] * scale[0], point[1] * scale[1]
+    return kept, items
 
 
 def mean_colour(colour: ColourMap, box: Float) -> Float:
@@ -121,14 +113,20 @@ def mean_colour(colour: ColourMap, box: Float) -> Float:
     return np.array(means, np.float32) / np.float32(255.0)
 
 
-def region(colour: ColourMap, box: Float, score: float) -> HandRegion:
-    """A box of the working picture as a region in source pixels, without outline."""
-    left, top, width, height = (float(value) for value in box)
-    inner = (
-        left + TIGHTER * width / 2,
-        top + TIGHTER * height / 2,
-        (1.0 - TIGHTER) * width,
-        (1.0 - TIGHTER) * height,
-    )
-    boxes = [scale_box(one, colour.scale, colour.source_size) for one in ((left, top, width, height), inner)]
-    return HandRegion(boxes[0], NO_OUTLINE, None, float(np.clip(score, 0.0, 1.0)), (boxes[1],))
+def regions_at(colour: ColourMap, boxes: Float, scores: Float) -> tuple[HandRegion, ...]:
+    """Boxes of the working picture, float32 (n, 4), as regions in source pixels, without outlines.
+
+    scores: float32 (n,). The other extent of each is a little tighter.
+    """
+    whole = boxes.astype(np.float64)
+    low, sides = whole[:, :2], whole[:, 2:]
+    tight = np.hstack([low + TIGHTER * sides / 2, (1.0 - TIGHTER) * sides])
+    extents = scale_boxes(np.concatenate([whole, tight]), colour.scale, colour.source_size)
+    confidences = scores.astype(np.float64).clip(0.0, 1.0).tolist()
+    found = [
+        HandRegion(box, NO_OUTLINE, None, confidence, (inner,))
+        for box, inner, confidence in zip(
+            extents[: len(boxes)], extents[len(boxes) :], confidences, strict=True
+        )
+    ]
+    return tuple(found)

@@ -2,22 +2,53 @@
 
 One stage, without anchors: heat at the middle of each hand (Zhou, Wang and Krähenbühl, "Objects as Points", 2019) and
 the distances to the four edges of its box (Tian, Shen, Chen and He, "FCOS", 2019), on a grid of 4 working pixels. A
-second plane of heat marks faces, which tell the axis of the body.
+second plane of heat marks faces, which tell the axis of the body. Peaks are local maxima of the heat, each with a box.
 """
+
+from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Network
-from lightgesture.features.standardise import Float
 from lightgesture.features.types import Image
 
-MULTIPLE = 16
+Float = NDArray[np.float32]
+
+MULTIPLE: Final = 16
 """Height and width that the net sees are multiples of its coarsest grid; the rest is filled with the mean colour."""
 INPUT, HEAT, EDGES = "picture", "heat", "edges"
 """Tensors of the net. Heat and edges are apart because one scale of eight bits would not fit both."""
+STRIDE: Final = 4
+"""Working pixels for one cell of the maps."""
+HAND, FACE = 0, 1
+"""Planes of heat, as logits; the four that follow are the logarithms of the distances from a cell's centre to the
+left, upper, right and lower edge of the hand, in working pixels."""
+PLANES: Final = 6
+MOST_PEAKS: Final = 6
+"""Peaks kept; each costs the time of a look by the refiner."""
+LEAST_HEAT: Final = 0.06
+"""Of a peak, 0 to 1; lower finds hands that hardly show and costs looks."""
+SAME_IOU: Final = 0.4
+"""Of two peaks whose boxes overlap more, the weaker goes."""
+LEAST_FACE: Final = 0.3
+"""Heat at which a face is believed, 0 to 1."""
+MOST_MAXIMA: Final = 48
+"""Local maxima that are looked at, so that a picture of specks costs a bounded time."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Peaks:
+    """boxes: float32 (n, 4), x, y, width, height in working pixels. heat: float32 (n,), 0 to 1, falling.
+    face: centre x, y of the likeliest face in working pixels, None where none is seen."""
+
+    boxes: Float
+    heat: Float
+    face: tuple[float, float] | None
 
 
 class Locator:
@@ -27,7 +58,7 @@ class Locator:
         self._network = Network(network)
 
     def process(self, picture: Image, tables: Float) -> Float:
-        """Maps of a working picture, float32 (6, h, w) on cells of 4 pixels; see `features.peaks`.
+        """Maps of a working picture, float32 (6, h, w) on cells of 4 pixels; see `HAND`.
 
         picture: uint8 (height, width, 3), BGR. tables: of `standardise.channel_tables`.
         """
@@ -45,3 +76,44 @@ def padded(values: NDArray[np.int8], fill: int) -> NDArray[np.int8]:
             cv2.copyMakeBorder(values, 0, down, 0, right, cv2.BORDER_CONSTANT, value=(fill,) * 3), np.int8
         )
     return values[None]
+
+
+def logistic(values: Float) -> Float:
+    """1 / (1 + exp(-x))."""
+    return np.asarray(1.0 / (1.0 + np.exp(-values)), np.float32)
+
+
+def _maxima(plane: Float, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Rows and columns of cells above `least` that no neighbour exceeds, highest first."""
+    highest = cv2.dilate(plane, np.ones((3, 3), np.uint8))
+    rows, columns = np.nonzero((plane >= highest) & (plane > least))
+    order = np.argsort(-plane[rows, columns], kind="stable")
+    return rows[order], columns[order]
+
+
+def boxes_at(maps: Float, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Float:
+    """Boxes that the maps (PLANES, h, w) give for some cells: float32 (n, 4)."""
+    left, top, right, bottom = np.exp(np.clip(maps[2:PLANES, rows, columns], -2.0, 6.0))
+    x, y = (columns + 0.5) * STRIDE, (rows + 0.5) * STRIDE
+    return np.stack([x - left, y - top, left + right, top + bottom], axis=1).astype(np.float32)
+
+
+def find_peaks(maps: Float, most: int = MOST_PEAKS, least_heat: float = LEAST_HEAT) -> Peaks:
+    """Hands and face of the locator's maps, float32 (PLANES, h, w).
+
+    most: peaks kept, at least 1. least_heat: of a peak, above 0 and below 1.
+    """
+    rows, columns = _maxima(maps[HAND], float(np.log(least_heat / (1.0 - least_heat))))
+    rows, columns = rows[:MOST_MAXIMA], columns[:MOST_MAXIMA]
+    boxes = boxes_at(maps, rows, columns)
+    same = pairwise_iou(boxes, boxes) >= SAME_IOU
+    kept = keep_distinct(same, range(len(boxes)), most)
+    heat = logistic(maps[HAND, rows, columns])
+    return Peaks(boxes[kept], heat[kept], _face(maps[FACE]))
+
+
+def _face(plane: Float) -> tuple[float, float] | None:
+    _, highest, _, (column, row) = cv2.minMaxLoc(plane)
+    if highest < np.log(LEAST_FACE / (1.0 - LEAST_FACE)):
+        return None
+    return (column + 0.5) * STRIDE, (row + 0.5) * STRIDE

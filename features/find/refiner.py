@@ -5,57 +5,88 @@ track, moved on by its filter, can be looked at just as well, so a followed hand
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from lightgesture.features.find.choice import Refined
-from lightgesture.features.find.windows import Window, WindowSettings, cut_window, window_of
+from lightgesture.features.colour import ColourMap
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Network
-from lightgesture.features.standardise import Float, luma_table
+from lightgesture.features.patch import Square, cut_squares, squares_round
+from lightgesture.features.standardise import Float, luma_tables
 from lightgesture.features.types import Image
 
 INPUT, HAND, BOX = "windows", "hand", "box"
 """Tensors of the net: the logit of a hand; left, upper, right and lower edge of its box, from the window's centre in
 window sides."""
-LEAST_SIDE = 2.0
+LEAST_SIDE: Final = 2.0
 """Pixels; no box is smaller."""
+SIZE: Final = 32
+"""Pixels along each side of a window."""
+CONTEXT: Final = 1.5
+"""Side of the window over the longer side of the box."""
+LEAST_WINDOW: Final = 0.125
+"""Least side of a window over its size."""
+LARGEST_WINDOW: Final = 2.0
+"""Largest side of a window over the longer side of the picture."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Refined:
+    """What the refiner says of n windows.
+
+    boxes: float32 (n, 4), x, y, width, height in working pixels. hand: float32 (n,), logit of being a hand.
+    """
+
+    boxes: Float
+    hand: Float
 
 
 class Refiner:
     """Runs the net on the windows of a frame."""
 
-    def __init__(self, network: IntegerNetwork, settings: WindowSettings | None = None) -> None:
+    def __init__(self, network: IntegerNetwork) -> None:
         self._network = Network(network)
-        self._settings = settings or WindowSettings()
 
-    def process(self, picture: Image, scale: float, boxes: Float, tables: Float) -> Refined:
-        """Look at the places of `boxes`, float (n, 4), working pixels.
+    def process(self, colour: ColourMap, boxes: Float, tables: Float) -> Refined:
+        """Look at the places of `boxes`, float32 (n, 4), working pixels.
 
-        picture: uint8 BGR, from which the windows are cut. scale: its pixels for one working pixel. tables: of
-        `standardise.channel_tables` over the working picture.
+        tables: of `standardise.channel_tables` over the working picture.
         """
         if not len(boxes):
             return Refined(np.zeros((0, 4), np.float32), np.zeros(0, np.float32))
-        size = self._settings.size
-        windows = [window_of(box, picture, self._settings) for box in boxes * np.float32(scale)]
-        colours = self._network.table(INPUT, tables)
-        seen = np.empty((len(windows), size, size, 4), np.int8)
-        for place, window in enumerate(windows):
-            cut = cut_window(picture, window, size)
-            seen[place, :, :, :3] = cv2.LUT(cut, colours)
-            luma, table = luma_table(cut)
-            seen[place, :, :, 3] = cv2.LUT(luma, self._network.table(INPUT, table))
+        scale = np.float32(colour.detail.shape[1] / colour.picture.shape[1])
+        windows = windows_round(boxes * scale, colour.detail)
+        cuts = cut_windows(colour.detail, windows)
+        seen = np.empty((len(windows), SIZE, SIZE, 4), np.int8)
+        colours = cv2.LUT(cuts.reshape(-1, SIZE, 3), self._network.table(INPUT, tables))
+        seen[..., :3] = colours.reshape(cuts.shape)
+        lumas, luma_values = luma_tables(cuts)
+        for window, luma, levels in zip(seen, lumas, self._network.table(INPUT, luma_values), strict=True):
+            window[..., 3] = cv2.LUT(luma, levels)
         outputs = self._network.run({INPUT: seen})
         edges = outputs[BOX].reshape(len(boxes), 4)
-        return Refined(boxes_of(edges, windows) / np.float32(scale), outputs[HAND].reshape(len(boxes)))
+        places = np.array(windows, np.float32)
+        sides = places[:, 2:]
+        centres = places[:, :2] + sides / 2
+        low, high = centres + edges[:, :2] * sides, centres + edges[:, 2:] * sides
+        found = np.hstack([low, np.maximum(high - low, LEAST_SIDE)]) / scale
+        return Refined(np.asarray(found, np.float32), outputs[HAND].reshape(len(boxes)))
 
 
-def boxes_of(edges: Float, windows: Sequence[Window]) -> Float:
-    """The refiner's boxes, float32 (n, 4), in the pixels of the windows that it saw."""
-    places = np.array(windows, np.float32)
-    sides = places[:, 2:]
-    centres = places[:, :2] + sides / 2
-    low, high = centres + edges[:, :2] * sides, centres + edges[:, 2:] * sides
-    return np.concatenate([low, np.maximum(high - low, LEAST_SIDE)], axis=1).astype(np.float32)
+def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:
+    """The windows of boxes, (n, 4), x, y, width, height in pixels of the picture."""
+    return squares_round(boxes, CONTEXT, LEAST_WINDOW * SIZE, LARGEST_WINDOW * max(picture.shape[:2]))
+
+
+def cut_windows(picture: Image, windows: Sequence[Square], size: int = SIZE) -> NDArray[np.uint8]:
+    """uint8 (n, size, size, 3): windows of a picture; what lies outside it continues its edge."""
+    seen = np.empty((len(windows), size, size, 3), np.uint8)
+    for place, cut, (_, _, side) in zip(seen, cut_squares(picture, windows), windows, strict=True):
+        # Interpolation alone would alias where the window shrinks.
+        how = cv2.INTER_AREA if side > size else cv2.INTER_LINEAR
+        cv2.resize(cut, (size, size), place, interpolation=how)
+    return seen

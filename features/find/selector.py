@@ -17,7 +17,7 @@ from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.classical import ClassicalSelector
 from lightgesture.features.find.learned import LearnedSelector
 from lightgesture.features.find.selector_file import load_classical, load_learned
-from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
+from lightgesture.features.find.settings import ALONE_CONFIDENCE, CLASSICAL, LEARNED, SelectorSettings
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
@@ -34,7 +34,6 @@ class RegionStage:
         self,
         selector: SelectorName = "learned",
         file: str | os.PathLike[str] | None = None,
-        settings: SelectorSettings | None = None,
     ) -> None:
         """selector: "learned" or "classical". file: of `lightgesture train regions`, None for the bundled one.
 
@@ -42,12 +41,12 @@ class RegionStage:
         """
         if selector not in SELECTORS:
             raise ValueError(f"selector {selector!r}: must be learned or classical")
-        self.settings = settings or (LEARNED if selector == "learned" else CLASSICAL)
+        self.settings: SelectorSettings
         self._source: LearnedSelector | ClassicalSelector
         if selector == "learned":
-            self._source = LearnedSelector(load_learned(file), self.settings)
+            self.settings, self._source = LEARNED, LearnedSelector(load_learned(file))
         else:
-            self._source = ClassicalSelector(load_classical(file), self.settings)
+            self.settings, self._source = CLASSICAL, ClassicalSelector(load_classical(file))
 
     def process(self, colour: ColourMap) -> Candidates:
         """Search one frame. A frame without contrast gives no candidates."""
@@ -89,7 +88,8 @@ def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegio
         one = candidates.regions[0]
         axis = candidates.source_size[0] / 2 if candidates.axis is None else candidates.axis
         side = side_of_axis(one.box, axis)
-        return [replace(one, side=side, confidence=one.confidence * settings.alone_confidence)]
+        sure = ALONE_CONFIDENCE
+        return [replace(one, side=side, confidence=one.confidence * sure, certainty=sure)]
     return []
 
 

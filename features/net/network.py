@@ -1,48 +1,63 @@
-"""A small integer network as data: its layers, its int8 weights, and the scale and zero point of every tensor.
+"""A small integer network as data: its layers and the shapes that follow, its int8 weights, every tensor's scale.
 
 Numbers follow the 8-bit quantisation specification of LiteRT (Jacob et al., "Quantization and Training of Neural
 Networks for Efficient Integer-Arithmetic-Only Inference", 2018): value = scale * (integer - zero), weights symmetric
 with a scale for each output channel, biases int32 with the product of the input's and the weights' scales.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.net.nodes import (
-    PASSING,
-    WEIGHTED,
-    NetworkError,
-    Node,
-    Shape,
-    infer_shapes,
-    same_padding,
-    weight_shape,
+WEIGHTED = ("conv", "depthwise", "dense")
+"""Operations with weights."""
+PASSING = ("upsample",)
+"""Operations that hand values on unchanged, so that their output has the scale of their input."""
+OPERATIONS = (*WEIGHTED, *PASSING, "add")
+ACTIVATIONS = ("none", "relu6")
+
+LARGEST_SIDE, MOST_CHANNELS, MOST_NODES, MOST_INPUTS, LARGEST_KERNEL, LARGEST_STRIDE = (
+    4096,
+    1024,
+    256,
+    8,
+    7,
+    4,
 )
+LARGEST_NAME = 64
+LARGEST_TENSOR = 2**24
+"""Values of one tensor of one picture: bounds the memory that a file may ask for."""
+MOST_TAPS = 2**15
+"""Products summed by one output value: 2**15 of at most 255 * 127 stay below 2**30, half of what int32 holds."""
 
-__all__ = [
-    "IntegerNetwork",
-    "NetworkError",
-    "Node",
-    "Quantisation",
-    "Shape",
-    "Weights",
-    "dequantise",
-    "infer_shapes",
-    "quantise",
-    "same_padding",
-]
+Shape = tuple[int, int, int]
+"""Height, width, channels; a vector has height and width 1."""
 
-LARGEST_WEIGHT = 127
-"""Weights are symmetric, so -128 is not used."""
-LARGEST_BIAS = 2**30
-"""Biases and the sum of all products stay below this each, so that their sum fits int32."""
-LEAST_FACTOR, LARGEST_FACTOR = 2.0**-31, 2.0**8
-"""Of input scale times weight scale over output scale: what the kernels of XNNPACK take."""
-LEAST_RATIO, LARGEST_RATIO = 2.0**-10, 2.0**8
-"""Of the scale of an operand of an addition over that of the sum: likewise."""
+
+class NetworkError(ValueError):
+    """A network that cannot be used: one line with the reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One layer.
+
+    op: "conv" (padding as TensorFlow's SAME: at stride 2 the odd row or column goes below or to the right), "depthwise"
+    (likewise, one filter a channel), "dense" (over all of a picture: rows, then columns, then channels), "add" (of two
+    tensors), "upsample" (each cell doubled both ways). inputs: names of earlier nodes or of inputs. channels: of the
+    output, for conv and dense. kernel, stride: for conv and depthwise. activation: "none" or "relu6" (0 to 6), of
+    weighted layers and add.
+    """
+
+    name: str
+    op: str
+    inputs: tuple[str, ...]
+    channels: int = 0
+    kernel: int = 1
+    stride: int = 1
+    activation: str = "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,80 +79,34 @@ class Weights:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class LiteRtFile:
+    """A network as LiteRT reads it, for pictures of the training's size.
+
+    content: of the `.tflite` file. sizes: for each node "upsample" the byte at which height and width of its output
+    stand, two int32: all in the file that another size of the inputs changes.
+    """
+
+    content: bytes
+    sizes: Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class IntegerNetwork:
     """inputs: shape of each input, height and width those of the training. nodes: in the order of computation.
-    outputs: names. weights: for each weighted node. quantisation: for every input and node."""
+    outputs: names. weights: for each weighted node. quantisation: for every input and node. litert: the same network
+    for LiteRT, None where only NumPy is to run it."""
 
     inputs: Mapping[str, Shape]
     nodes: tuple[Node, ...]
     outputs: tuple[str, ...]
     weights: Mapping[str, Weights]
     quantisation: Mapping[str, Quantisation]
-
-    def check(self) -> None:
-        """Refuse what does not fit together. Raises NetworkError."""
-        shapes = infer_shapes(self.inputs, self.nodes)
-        computed = {node.name for node in self.nodes}
-        if not self.outputs or len(set(self.outputs)) != len(self.outputs):
-            raise NetworkError("the outputs must be one or more different nodes")
-        if missing := [name for name in self.outputs if name not in computed]:
-            raise NetworkError(f"output {missing[0]} is no node")
-        for name in shapes:
-            _check_quantisation(name, self.quantisation.get(name))
-        for node in self.nodes:
-            if node.op in WEIGHTED:
-                _check_weights(node, self.weights.get(node.name), shapes)
-            self._check_scales(node)
+    litert: LiteRtFile | None = None
 
     def factors(self, node: Node) -> NDArray[np.float64]:
         """What brings the sums of a weighted node to the scale of its output, for each channel."""
         own, result = self.quantisation[node.inputs[0]], self.quantisation[node.name]
         return self.weights[node.name].scales.astype(np.float64) * own.scale / result.scale
-
-    def _check_scales(self, node: Node) -> None:
-        sources = [self.quantisation[name] for name in node.inputs]
-        result = self.quantisation[node.name]
-        if node.op in WEIGHTED:
-            factors = self.factors(node)
-            if not (factors.min() >= LEAST_FACTOR and factors.max() < LARGEST_FACTOR):
-                raise NetworkError(
-                    f"{node.name}: scales of input and weights over that of the output must be "
-                    f"{LEAST_FACTOR:.1e} to {LARGEST_FACTOR:.0f}, not {factors.min():.1e} to {factors.max():.1e}"
-                )
-        elif node.op in PASSING:
-            if any(source != result for source in sources):
-                raise NetworkError(f"{node.name}: the inputs of {node.op} must have the scale of its output")
-        elif not all(LEAST_RATIO <= source.scale / result.scale < LARGEST_RATIO for source in sources):
-            raise NetworkError(
-                f"{node.name}: the scales of the inputs of {node.op} are too far from its output's"
-            )
-
-
-def _check_quantisation(name: str, quantisation: Quantisation | None) -> None:
-    if quantisation is None:
-        raise NetworkError(f"{name} has no scale")
-    if not (0.0 < quantisation.scale < np.inf) or not -128 <= quantisation.zero <= 127:
-        raise NetworkError(
-            f"{name}: scale {quantisation.scale} or zero point {quantisation.zero} out of range"
-        )
-
-
-def _check_weights(node: Node, weights: Weights | None, shapes: Mapping[str, Shape]) -> None:
-    expected = weight_shape(node, shapes[node.inputs[0]])
-    if weights is None or weights.weights.shape != expected:
-        raise NetworkError(f"{node.name}: its weights must have the shape {expected}")
-    channels = shapes[node.name][2]
-    if weights.biases.shape != (channels,) or weights.scales.shape != (channels,):
-        raise NetworkError(f"{node.name}: {channels} biases and scales are needed")
-    arrays = weights.weights, weights.biases, weights.scales
-    if [array.dtype.name for array in arrays] != ["int8", "int32", "float32"]:
-        raise NetworkError(f"{node.name}: weights, biases and scales must be int8, int32 and float32")
-    if weights.weights.min() < -LARGEST_WEIGHT:
-        raise NetworkError(f"{node.name}: a weight is below -{LARGEST_WEIGHT}")
-    if np.abs(weights.biases.astype(np.int64)).max() > LARGEST_BIAS:
-        raise NetworkError(f"{node.name}: a bias is beyond {LARGEST_BIAS}")
-    if not (np.isfinite(weights.scales).all() and (weights.scales > 0).all()):
-        raise NetworkError(f"{node.name}: the scales of its weights must be above 0")
 
 
 def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArray[np.int8]:
@@ -149,3 +118,99 @@ def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArra
 def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> NDArray[np.float32]:
     """What the integers stand for."""
     return (levels.astype(np.float32) - np.float32(quantisation.zero)) * np.float32(quantisation.scale)
+
+
+def same_padding(size: int, kernel: int, stride: int) -> tuple[int, int]:
+    """Rows before and after, so that the output has ceil(size / stride) rows."""
+    total = max((-(-size // stride) - 1) * stride + kernel - size, 0)
+    return total // 2, total - total // 2
+
+
+def infer_shapes(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> dict[str, Shape]:
+    """Shape of every tensor for inputs of these shapes. Raises NetworkError."""
+    if len(nodes) > MOST_NODES:
+        raise NetworkError(f"{len(nodes)} nodes are more than {MOST_NODES}")
+    if not 1 <= len(inputs) <= MOST_INPUTS:
+        raise NetworkError(f"{len(inputs)} inputs; 1 to {MOST_INPUTS} are allowed")
+    shapes: dict[str, Shape] = {}
+    for name, shape in inputs.items():
+        _check_name(name)
+        shapes[name] = _checked_shape(name, tuple(shape))
+    for node in nodes:
+        _check_node(node, shapes)
+        shapes[node.name] = _checked_shape(
+            node.name, _output_shape(node, [shapes[name] for name in node.inputs])
+        )
+    return shapes
+
+
+def weight_shape(node: Node, source: Shape) -> tuple[int, ...]:
+    """Shape of a node's weights for an input of the shape `source`."""
+    if node.op == "conv":
+        return node.channels, node.kernel, node.kernel, source[2]
+    if node.op == "depthwise":
+        return 1, node.kernel, node.kernel, source[2]
+    return node.channels, source[0] * source[1] * source[2]
+
+
+def taps(node: Node, source: Shape) -> int:
+    """Products summed by one output value of a weighted layer."""
+    if node.op == "dense":
+        return source[0] * source[1] * source[2]
+    return node.kernel * node.kernel * (source[2] if node.op == "conv" else 1)
+
+
+def _output_shape(node: Node, sources: Sequence[Shape]) -> Shape:
+    height, width, channels = sources[0]
+    if node.op == "dense":
+        return 1, 1, node.channels
+    if node.op == "upsample":
+        return 2 * height, 2 * width, channels
+    if node.op == "add":
+        if sources[1] != sources[0]:
+            raise NetworkError(f"{node.name}: the shapes {sources[0]} and {sources[1]} do not fit add")
+        return height, width, channels
+    rows, columns = -(-height // node.stride), -(-width // node.stride)
+    return rows, columns, node.channels if node.op == "conv" else channels
+
+
+def _check_name(name: str) -> None:
+    if not (name.isidentifier() and name.isascii() and len(name) <= LARGEST_NAME):
+        raise NetworkError(
+            f"{name[:LARGEST_NAME]!r} is no name of a tensor: letters, digits and _, up to {LARGEST_NAME}"
+        )
+
+
+def _check_node(node: Node, known: Mapping[str, Shape]) -> None:
+    _check_name(node.name)
+    if node.op not in OPERATIONS:
+        raise NetworkError(f"{node.name}: unknown operation {node.op!r}; known are {', '.join(OPERATIONS)}")
+    allowed = ACTIVATIONS if node.op in (*WEIGHTED, "add") else ACTIVATIONS[:1]
+    if node.activation not in allowed:
+        raise NetworkError(
+            f"{node.name}: activation {node.activation!r} of {node.op} is not {', '.join(allowed)}"
+        )
+    if node.name in known:
+        raise NetworkError(f"{node.name}: the name is used twice")
+    if len(node.inputs) != (2 if node.op == "add" else 1):
+        raise NetworkError(f"{node.name}: {len(node.inputs)} inputs do not fit {node.op}")
+    if unknown := [name for name in node.inputs if name not in known]:
+        raise NetworkError(f"{node.name}: its input {unknown[0]} does not come before it")
+    if not (1 <= node.kernel <= LARGEST_KERNEL and 1 <= node.stride <= LARGEST_STRIDE):
+        raise NetworkError(f"{node.name}: kernel must be 1 to {LARGEST_KERNEL}, stride 1 to {LARGEST_STRIDE}")
+    source = known[node.inputs[0]]
+    if node.op in WEIGHTED and taps(node, source) > MOST_TAPS:
+        raise NetworkError(f"{node.name}: sums {taps(node, source)} products, more than {MOST_TAPS}")
+
+
+def _checked_shape(name: str, shape: tuple[int, ...]) -> Shape:
+    if len(shape) != 3 or not all(1 <= side <= LARGEST_SIDE for side in shape[:2]):
+        raise NetworkError(
+            f"{name}: shape {shape} is not height, width, channels with sides up to {LARGEST_SIDE}"
+        )
+    height, width, channels = shape
+    if not 1 <= channels <= MOST_CHANNELS:
+        raise NetworkError(f"{name}: {channels} channels; 1 to {MOST_CHANNELS} are allowed")
+    if height * width * channels > LARGEST_TENSOR:
+        raise NetworkError(f"{name}: shape {shape} holds more than {LARGEST_TENSOR} values")
+    return height, width, channels

@@ -3,14 +3,13 @@
 Plain, without a run-time to install. The fast run-time is tested against it, and it runs where that is missing.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.net.network import IntegerNetwork, Quantisation
-from lightgesture.features.net.nodes import Node, same_padding
+from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, same_padding
 
 Levels = NDArray[np.int8]
 Wide = NDArray[np.int64]
@@ -46,10 +45,15 @@ class NumpyRunner:
 
     def run(self, inputs: Mapping[str, Levels]) -> dict[str, Levels]:
         """int8 (n, h, w, channels) for each input -> the same for each output."""
+        tensors = self.tensors(inputs)
+        return {name: tensors[name] for name in self._network.outputs}
+
+    def tensors(self, inputs: Mapping[str, Levels]) -> dict[str, Levels]:
+        """The same of every input and node."""
         tensors = dict(inputs)
         for node in self._network.nodes:
             tensors[node.name] = self._compute(node, [tensors[name] for name in node.inputs])
-        return {name: tensors[name] for name in self._network.outputs}
+        return tensors
 
     def _compute(self, node: Node, sources: list[Levels]) -> Levels:
         if node.op == "upsample":
@@ -64,11 +68,30 @@ class NumpyRunner:
 
 
 def multiply(values: Wide, factors: NDArray[np.float64] | float) -> Wide:
-    """Values times factors, each a 31-bit multiplier and a shift, rounded to the nearest, halves upwards."""
+    """Values times factors, rounded to the nearest, halves upwards."""
+    multipliers, shifts = fixed_point(factors)
+    return np.asarray((values * multipliers + (np.int64(1) << (shifts - 1))) >> shifts)
+
+
+def fixed_point(factors: NDArray[np.float64] | float) -> tuple[Wide, Wide]:
+    """31-bit multipliers and right shifts: factor = multiplier / 2**shift."""
     mantissas, exponents = np.frexp(np.asarray(factors, np.float64))
     multipliers = np.rint(mantissas * (1 << MULTIPLIER_BITS)).astype(np.int64)
-    shifts = MULTIPLIER_BITS - exponents.astype(np.int64)
-    return np.asarray((values * multipliers + (np.int64(1) << (shifts - 1))) >> shifts)
+    return multipliers, np.asarray(MULTIPLIER_BITS - exponents.astype(np.int64))
+
+
+def addition_factors(scales: Sequence[Quantisation], result: Quantisation) -> tuple[list[float], float]:
+    """What brings each widened operand of an addition to a common scale, and their sum to the result's."""
+    twice_largest = 2.0 * max(scale.scale for scale in scales)
+    own = [scale.scale / twice_largest for scale in scales]
+    return own, twice_largest / ((1 << ADD_SHIFT) * result.scale)
+
+
+def bounds(result: Quantisation, activation: str) -> tuple[int, int]:
+    """The lowest and highest integer that an activation leaves."""
+    if activation != "relu6":
+        return LOWEST, HIGHEST
+    return max(LOWEST, result.zero), min(HIGHEST, result.zero + round(6.0 / result.scale))
 
 
 def _layer(network: IntegerNetwork, node: Node) -> _Layer:
@@ -120,18 +143,12 @@ def _taps(source: NDArray[np.generic], node: Node) -> list[tuple[int, int, NDArr
 
 def _add(node: Node, sources: list[Levels], scales: list[Quantisation], result: Quantisation) -> Levels:
     """Both operands on a common scale, added, and brought to the result's."""
-    twice_largest = 2.0 * max(scale.scale for scale in scales)
+    factors, last = addition_factors(scales, result)
     total = np.zeros(sources[0].shape, np.int64)
-    for levels, scale in zip(sources, scales, strict=True):
-        shifted = (levels.astype(np.int64) - scale.zero) << ADD_SHIFT
-        total += multiply(shifted, scale.scale / twice_largest)
-    factor = twice_largest / ((1 << ADD_SHIFT) * result.scale)
-    return _activate(multiply(total, factor), result, node.activation)
+    for levels, scale, factor in zip(sources, scales, factors, strict=True):
+        total += multiply((levels.astype(np.int64) - scale.zero) << ADD_SHIFT, factor)
+    return _activate(multiply(total, last), result, node.activation)
 
 
 def _activate(values: Wide, result: Quantisation, activation: str) -> Levels:
-    low, high = LOWEST, HIGHEST
-    if activation == "relu6":
-        low = max(low, result.zero)
-        high = min(high, result.zero + round(6.0 / result.scale))
-    return np.asarray(np.clip(values + result.zero, low, high), np.int8)
+    return np.asarray(np.clip(values + result.zero, *bounds(result, activation)), np.int8)

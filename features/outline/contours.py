@@ -7,14 +7,11 @@ direction of colour in which this hand differs from this room or water; Otsu's t
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-
-from lightgesture.features.outline.hu import HU_COUNT, hu_moments, log_signed
-from lightgesture.features.outline.shape import convex_hull, defect_depths
 
 Float = NDArray[np.float32]
 Mask = NDArray[np.uint8]
@@ -23,33 +20,41 @@ Contour = NDArray[np.int32]
 
 @dataclass(frozen=True, slots=True)
 class ContourSettings:
-    """How the outline is found and measured.
-
-    size: side in pixels to which a patch is reduced first, 16 to 64.
-    middle_width, middle_height: half axes of the ellipse that is taken for hand, shares of half the side.
-    rim: width of the border that is taken for background, a share of the side; without the lower quarter,
-        where the wrist leaves the patch.
-    evenness: added to the scatter of the square-root colours (0 to 1), so that a flat patch divides by something.
-    prior: weight of a bump in the middle against the colour difference, both in standard deviations.
-    deep: smallest depth of a convexity defect that counts as the gap between two fingers, a share of the side.
-    directions: of the radial signature.
-    """
+    """How the outline is found and measured."""
 
     size: int = 32
+    """Side in pixels to which a patch is reduced first, 16 to 64."""
     middle_width: float = 0.45
+    """Half axis along x of the ellipse that is taken for hand, a share of half the side, 0.2 to 1."""
     middle_height: float = 0.6
+    """Its half axis along y."""
     rim: float = 0.1
+    """Width of the border that is taken for background, a share of the side, 0 to 0.25; without the lower quarter,
+    where the wrist leaves the patch."""
     evenness: float = 1e-3
+    """Added to the scatter of the square-root colours (0 to 1), so that a flat patch divides by something."""
     prior: float = 0.4
+    """Weight of a bump in the middle against the colour difference, both in standard deviations."""
     deep: float = 0.08
+    """Smallest depth of a convexity defect that counts as the gap between two fingers, a share of the side."""
     directions: int = 24
+    """Of the radial signature; each is a number of the vector."""
 
 
-DEFECTS = 4
+DEFECTS: Final = 4
 """Depths of convexity defects in the vector: five fingers have four gaps."""
 
-SHAPE_NUMBERS = 6
+SHAPE_NUMBERS: Final = 6
 """Area, solidity, extent, aspect, circularity, number of deep defects."""
+
+HU_COUNT: Final = 7
+"""Number of Hu's invariants."""
+
+SMALLEST: Final = 1e-12
+"""Moments nearer to zero than this count as this: a symmetric outline has several that are rounding errors."""
+
+DEPTH_UNIT: Final = 256.0
+"""OpenCV gives the depth of a convexity defect as an integer, in this share of a pixel."""
 
 
 def contour_length(settings: ContourSettings | None = None) -> int:
@@ -102,7 +107,7 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     """
     settings = settings or ContourSettings()
     area = max(float(cv2.contourArea(contour)), 1.0)
-    hull = convex_hull(contour)
+    hull = cv2.convexHull(contour.reshape(-1, 1, 2))
     hull_area = max(float(cv2.contourArea(hull)), area)
     perimeter = max(float(cv2.arcLength(contour, True)), 1.0)
     _, _, width, height = cv2.boundingRect(contour)
@@ -122,6 +127,48 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     moments = log_signed(hu_moments(contour)) / 10.0
     return np.concatenate([shape, deepest, moments, radial_signature(contour, settings.directions)]).astype(
         np.float32
+    )
+
+
+def hu_moments(contour: Contour) -> NDArray[np.float64]:
+    """Hu's seven invariants of the area inside a closed outline, int32 (n, 2), as float64 (7,); zeros without area.
+
+    Hu, "Visual Pattern Recognition by Moment Invariants", IRE Transactions on Information Theory 8, 1962. They do not
+    change when the outline is moved, turned or enlarged; its mirror image changes the sign of the seventh.
+    """
+    moments = cv2.moments(contour.reshape(-1, 1, 2))
+    if moments["m00"] == 0.0:
+        return np.zeros(HU_COUNT)
+    return np.asarray(cv2.HuMoments(moments), np.float64).reshape(HU_COUNT)
+
+
+def log_signed(moments: NDArray[np.float64]) -> NDArray[np.float64]:
+    """sign(h) (12 + log10 |h|), float64 (7,): comparable sizes, the sign of a mirror image kept.
+
+    Small moments go to 0 from both signs, so that a sign that is only noise does not matter.
+    """
+    size = np.maximum(np.abs(moments), SMALLEST)
+    return np.asarray(np.sign(moments) * (np.log10(size) - np.log10(SMALLEST)))
+
+
+def defect_depths(contour: Contour) -> NDArray[np.float64]:
+    """Depths in pixels of the dents of a closed outline, int32 (n, 2), as float64 (k,), in its order: how far the
+    outline's farthest point lies from the hull between two places where it meets it.
+
+    Turned, mirrored: the same. Enlarged: with the outline. Homma and Takenaka, "An image processing method for feature
+    extraction of space-occupying lesions", 1985.
+    """
+    curve = contour.reshape(-1, 1, 2)
+    if len(curve) < 4:
+        return np.zeros(0)
+    hull = np.asarray(cv2.convexHull(curve, returnPoints=False)).reshape(-1)
+    # OpenCV refuses a hull whose indices are not monotonous, which rounding makes of outlines that touch themselves.
+    hull = np.sort(hull)[::-1].astype(np.int32)
+    if len(hull) < 3:
+        return np.zeros(0)
+    defects = cv2.convexityDefects(curve, hull.reshape(-1, 1))
+    return (
+        np.zeros(0) if defects is None else np.asarray(defects, np.float64).reshape(-1, 4)[:, 3] / DEPTH_UNIT
     )
 
 
@@ -166,7 +213,8 @@ def _square_roots() -> NDArray[np.float64]:
     return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float64)
 
 
-class _Regions(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class _Regions:
     """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (2, p), of each pixel in
     the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`.
     evenness: (3, 3), what is added to the scatter."""

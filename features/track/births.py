@@ -1,208 +1,219 @@
 """Which tracks are believed: births from verified pairs or repeated evidence, and the end of what is contradicted.
 
-The tracks that have a number hold their place against a new pair unless it is clearly better, so that a second pair
-such as a mirror image does not take turns with the hands; and they lose it if it is, so that a red object that was
-taken for a hand once does not stay one. Pure functions.
+A score of one frame says little: a red box on a table scores high now and then. A pair is believed once it scores very
+high, or well for some frames in a row; which of two pairs is the better is told by mean scores. The hands that are
+followed hold their place against a new pair unless it is clearly better, so that a second pair such as a mirror image
+does not take turns with them; and they lose it if it is, so that a red object that was taken for a hand once does not
+stay one. Pure functions, in seconds and frames both.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from operator import attrgetter
+from typing import Final
 
 from lightgesture.features.find.settings import SelectorSettings
-from lightgesture.features.track.evidence import PairEvidence, is_verified
 from lightgesture.features.track.matching import Observed
-from lightgesture.features.track.settings import TrackSettings
-from lightgesture.features.track.sides import CERTAIN, lone_side, pair_sides
-from lightgesture.features.track.state import TrackState, trust_s
-from lightgesture.features.types import Side
+from lightgesture.features.track.state import TENTATIVE_S, Track, blend, trust_s
+
+SURE_SHARE: Final = 0.2
+"""A pair whose score exceeds the least one by this share of what is missing to 1 is believed at once."""
+PAIR_S: Final = 0.05
+"""Seconds for which a weaker pair must have been seen."""
+PAIR_FRAMES: Final = 2
+"""Frames in which it must have been seen."""
+SINGLE_S: Final = 0.06
+"""Seconds for which a region without a partner must have been seen."""
+SINGLE_FRAMES: Final = 3
+"""Frames in which it must have been seen."""
+REPLACE_S: Final = 0.1
+"""Seconds for which a better pair must have been seen to replace hands that are seen as well."""
+SURE_MARGIN: Final = 0.35
+"""A pair whose mean score is better by so much replaces them at once."""
+NEW_PAIRS: Final = 2
+"""Pairs of a frame that may come under observation, best first."""
+NEW_SINGLES: Final = 2
+"""Regions of a frame that may come under observation on their own, best first."""
 
 PairKey = tuple[int, int]
 """Keys of two tracks, the smaller first."""
 
-NEW_PAIRS, NEW_SINGLES = 2, 2
-"""Pairs and regions of a frame that may come under observation, best first."""
+
+@dataclass(frozen=True, slots=True)
+class PairEvidence:
+    """What is known of a pair. level: mean score, the last frames counting most, 0 to 1. since_s, last_s: first and
+    last time of the present run of sufficient scores. hits: frames in it."""
+
+    level: float
+    since_s: float
+    last_s: float
+    hits: int
 
 
-def pair_key(first: TrackState, second: TrackState) -> PairKey:
-    """The name of a pair of tracks."""
-    return min(first.key, second.key), max(first.key, second.key)
+def observe(known: PairEvidence | None, score: float, now: float, step: float, least: float) -> PairEvidence:
+    """The evidence after a frame at `now` seconds in which the pair scored `score` (0: not both were seen).
+
+    least: score that suffices. A run outlives frames that are missed, but not for long.
+    """
+    if known is None:
+        return PairEvidence(score, now, now, 0 if score < least else 1)
+    level = blend(known.level, score, step)
+    if score < least:
+        ended = now - known.last_s > TENTATIVE_S
+        return PairEvidence(level, known.since_s, known.last_s, 0 if ended else known.hits)
+    return PairEvidence(level, known.since_s if known.hits else now, now, known.hits + 1)
 
 
-def numbered(tracks: Iterable[TrackState]) -> list[TrackState]:
-    """The tracks that have a number: confirmed or lost."""
-    return [track for track in tracks if track.number]
+def is_verified(evidence: PairEvidence, least: float) -> bool:
+    """Whether the pair is believed: `least` exceeded by a good share, or reached for long enough."""
+    if evidence.hits and evidence.level >= least + SURE_SHARE * (1.0 - least):
+        return True
+    lasted = evidence.last_s - evidence.since_s >= PAIR_S
+    return evidence.hits >= PAIR_FRAMES and lasted and evidence.level >= least
 
 
-def held_level(tracks: Sequence[TrackState], evidence: Mapping[PairKey, PairEvidence]) -> float:
+def gather(
+    evidence: Mapping[PairKey, PairEvidence],
+    tracks: Iterable[Track],
+    observed: Observed,
+    now: float,
+    step: float,
+    least: float,
+) -> dict[PairKey, PairEvidence]:
+    """The evidence on all pairs of tracks after a frame; kept of pairs that once scored `least`."""
+    gathered = {}
+    for first, second in combinations(sorted(tracks, key=attrgetter("key")), 2):
+        known = evidence.get((first.key, second.key))
+        score = observed.together(first.region, second.region)
+        if known is not None or score >= least:
+            gathered[first.key, second.key] = observe(known, score, now, step, least)
+    return gathered
+
+
+def held_level(hands: Sequence[Track], evidence: Mapping[PairKey, PairEvidence]) -> float:
     """Mean score of the pair that is followed, 0 without one."""
-    held = numbered(tracks)
-    if len(held) < 2:
+    if len(hands) < 2:
         return 0.0
-    known = evidence.get(pair_key(held[0], held[1]))
+    first, second = hands[0].key, hands[1].key
+    known = evidence.get((min(first, second), max(first, second)))
     return 0.0 if known is None else known.level
 
 
 def worth_observing(
-    tracks: Sequence[TrackState],
-    observed: Observed,
-    held: float,
-    settings: TrackSettings,
-    selection: SelectorSettings,
+    hands: Sequence[Track], observed: Observed, better: float, selection: SelectorSettings
 ) -> list[int]:
-    """Regions that may be hands, best first: those of verified pairs that would be better than the present one, whose
-    mean score is `held`, and without a pair those that are believed on their own."""
-    present = numbered(tracks)
-    better = held + settings.margin if len(present) == 2 else 0.0
+    """Regions that may be hands, best first: those of verified pairs of at least the mean score `better`, where two
+    hands are followed; else those of any verified pair, and those that are believed on their own."""
+    has_pair = len(hands) == 2
     worth = [
         index
         for pair in observed.pairs[:NEW_PAIRS]
-        if pair.score >= better
+        if not has_pair or pair.score >= better
         for index in (pair.first, pair.second)
     ]
-    if len(present) < 2:
-        least = max(selection.single_score, present[0].level if present else 0.0)
-        believed = [index for index, region in observed.regions.items() if region.confidence >= least]
-        worth += believed[:NEW_SINGLES]
+    if not has_pair:
+        least = max(selection.single_score, hands[0].level if hands else 0.0)
+        worth += list(observed.credible(least))[:NEW_SINGLES]
     return list(dict.fromkeys(worth))
 
 
 def believed_pair(
-    tracks: Sequence[TrackState],
+    hands: Sequence[Track],
+    tentative: Sequence[Track],
     evidence: Mapping[PairKey, PairEvidence],
-    settings: TrackSettings,
-    selection: SelectorSettings,
-) -> tuple[TrackState, TrackState, float] | None:
+    least: float,
+    margin: float,
+) -> tuple[Track, Track, float] | None:
     """The pair that is to be followed from now on, at least one of them new, and its mean score; None if all stays
-    as it is."""
-    seen = {track.key: track for track in tracks if not track.missed}
-    held = held_level(tracks, evidence)
-    best: tuple[TrackState, TrackState, float] | None = None
+    as it is. least: score of a pair; margin: see TrackSettings."""
+    seen = {track.key: track for track in (*hands, *tentative) if not track.missed}
+    best: tuple[Track, Track, float] | None = None
     for (first, second), known in evidence.items():
-        if first not in seen or second not in seen or not is_verified(known, selection.pair_score, settings):
+        if first not in seen or second not in seen:
             continue
         pair = seen[first], seen[second]
-        new = sum(not track.number for track in pair)
-        is_better = new and _replaces(known, new, numbered(tracks), held, settings, selection)
-        if is_better and (best is None or known.level > best[2]):
+        new = (not pair[0].number) + (not pair[1].number)
+        if not new or not is_verified(known, least) or (best is not None and known.level <= best[2]):
+            continue
+        held = held_level(hands, evidence)
+        if _replaces(known, new, hands, held, least, margin):
             best = *pair, known.level
     return best
 
 
 def _replaces(
-    known: PairEvidence,
-    new: int,
-    present: Sequence[TrackState],
-    held: float,
-    settings: TrackSettings,
-    selection: SelectorSettings,
+    known: PairEvidence, new: int, hands: Sequence[Track], held: float, least: float, margin: float
 ) -> bool:
-    """Whether a verified pair, `new` of its tracks without a number, takes the place of the present tracks, whose
-    mean score is `held`."""
-    if len(present) == 2:
+    """Whether a verified pair, `new` of its tracks without a number, takes the place of the hands that are followed,
+    whose mean score is `held`."""
+    if len(hands) == 2:
         lead = known.level - held
-        is_settled = known.last_s - known.since_s >= settings.replace_s
-        is_held = not any(track.missed for track in present)
-        return lead >= settings.margin and (lead >= settings.sure_margin or is_settled or not is_held)
-    if present and new == 2 and present[0].basis == CERTAIN and not present[0].missed:
+        is_settled = known.last_s - known.since_s >= REPLACE_S
+        is_held = not any(track.missed for track in hands)
+        return lead >= margin and (lead >= SURE_MARGIN or is_settled or not is_held)
+    if hands and new == 2 and hands[0].basis == "pair" and not hands[0].missed:
         # One of two hands that were seen together: more than any two regions that pass for a pair.
-        return known.level >= selection.pair_score + settings.margin
+        return known.level >= least + margin
     return True
 
 
 def believed_single(
-    tracks: Sequence[TrackState], settings: TrackSettings, selection: SelectorSettings
-) -> TrackState | None:
-    """The lone hand that is to be followed from now on; None if all stays as it is."""
-    present = numbered(tracks)
-    if len(present) == 2:
+    hands: Sequence[Track], tentative: Sequence[Track], least: float, margin: float
+) -> Track | None:
+    """The lone hand that is to be followed from now on; None if all stays as it is. least: score of a lone region;
+    margin: see TrackSettings."""
+    if len(hands) == 2:
         return None
-    least = selection.single_score
-    if present:
-        least = max(least, present[0].level + settings.margin)
+    if hands:
+        least = max(least, hands[0].level + margin)
     known = [
         track
-        for track in tracks
-        if not track.number
-        and not track.missed
+        for track in tentative
+        if not track.missed
         and track.level >= least
-        and track.hits >= settings.single_frames
-        and track.proved_s - track.since_s >= settings.single_s
+        and track.hits >= SINGLE_FRAMES
+        and track.proved_s - track.since_s >= SINGLE_S
     ]
-    return max(known, key=lambda track: track.level, default=None)
+    return max(known, key=attrgetter("level"), default=None)
 
 
-def with_pair_sides(
-    first: TrackState, second: TrackState, level: float, settings: TrackSettings
-) -> tuple[TrackState, TrackState]:
-    """Both tracks with the sides of two hands seen together, `level` being their mean score.
-
-    A side stays that a hand has had for a while from as good a pair as this. One from a guess gives way, and one from
-    a worse pair or a short one, which may have been a hand and another thing.
-    """
-
-    def known(track: TrackState) -> Side | None:
-        is_old = track.proved_s - track.since_s >= settings.settle_s
-        is_good = track.side_level >= level - settings.margin
-        return track.side if track.basis == CERTAIN and is_old and is_good else None
-
-    sides = pair_sides(first.x, second.x, known(first), known(second))
-    return (
-        first._replace(side=sides[0], basis=CERTAIN, side_level=level),
-        second._replace(side=sides[1], basis=CERTAIN, side_level=level),
-    )
-
-
-def with_old_number(believed: tuple[TrackState, ...], tracks: Sequence[TrackState]) -> tuple[TrackState, ...]:
+def with_old_number(believed: tuple[Track, ...], hands: Sequence[Track]) -> tuple[Track, ...]:
     """The believed pair, the new hand with the number of a lost one: a diver has two hands, so the partner of one is
     the other, wherever it comes back. One that is still seen elsewhere was another thing."""
     kept = {track.key for track in believed}
-    lost = [track for track in numbered(tracks) if track.missed and track.key not in kept]
+    lost = [track for track in hands if track.missed and track.key not in kept]
     if len(lost) != 1 or sum(1 for track in believed if track.number) != 1:
         return believed
-    return tuple(track if track.number else track._replace(number=lost[0].number) for track in believed)
-
-
-def with_lone_side(track: TrackState, axis: float | None, width: int) -> TrackState:
-    """The track with a better guess of its side, if its side is a guess: made at its birth, by the picture's middle
-    if need be, and once more when the body's axis is first seen. It does not change as the hand moves on."""
-    is_settled = track.basis in (CERTAIN, "axis") or (track.basis == "middle" and axis is None)
-    if not track.number or is_settled:
-        return track
-    side, basis = lone_side(track.x, axis, width)
-    return track._replace(side=side, basis=basis)
+    return tuple(track if track.number else replace(track, number=lost[0].number) for track in believed)
 
 
 def proved(
-    tracks: Sequence[TrackState],
+    hands: Sequence[Track],
     score: float,
     held: float,
     now: float,
-    settings: TrackSettings,
+    doubt_s: float,
     selection: SelectorSettings,
-) -> list[TrackState]:
-    """The tracks with what was proved in this frame: the time at which they were last believed, and how good a pair
+) -> list[Track]:
+    """The hands with what was proved in this frame: the time at which they were last believed, and how good a pair
     their sides rest on.
 
     score, held: of the pair that is followed, in this frame and in the mean. Two hands that are seen prove each
-    other; where they have not for too long, one of them is none, and the better one stays only if it is believed on
-    its own.
+    other; where they have not for too long (`doubt_s`), one of them is none, and the better one stays only if it is
+    believed on its own.
     """
-    present = numbered(tracks)
-    seen = [track for track in present if not track.missed]
+    seen = [track for track in hands if not track.missed]
     fresh = set()
     if len(seen) == 2 and score >= selection.pair_score:
         fresh = {track.key for track in seen}
     elif len(seen) == 1 and seen[0].confidence >= selection.single_score:
         fresh = {seen[0].key}
-    doubted = [
-        track
-        for track in present
-        if track.key not in fresh and now - track.proved_s > trust_s(track, settings.doubt_s, settings)
-    ]
-    if len(seen) == 2 and len(doubted) == 2:
-        better = max(doubted, key=lambda track: track.level)
+    elif len(seen) == 2 and all(now - track.proved_s > trust_s(track, doubt_s) for track in seen):
+        better = max(seen, key=attrgetter("level"))
         if better.level >= selection.single_score:
-            fresh.add(better.key)
+            fresh = {better.key}
     return [
-        track._replace(proved_s=now, side_level=max(track.side_level, held)) if track.key in fresh else track
-        for track in tracks
+        replace(track, proved_s=now, side_level=max(track.side_level, held)) if track.key in fresh else track
+        for track in hands
     ]

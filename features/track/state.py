@@ -1,191 +1,206 @@
-"""The life of one track: tentative, confirmed, lost. Pure functions from a state to the next.
+"""The life of one track: tentative, confirmed, lost; and its side. Pure functions from a track to the next.
 
 A region under observation is a tentative track: it has a filter and counts, but no number and no side, and nobody is
-told of it. The stage confirms it once the evidence suffices. A confirmed track that misses its region is lost:
-remembered with number and side, and confirmed again when the region returns in time.
+told of it. It is confirmed once the evidence suffices, and gets its number. A confirmed track that misses its region is
+lost: remembered with number and side, and confirmed again when the region returns in time.
+
+A diver faces the camera, so in an unmirrored picture the right hand is at image left when both are seen and first
+believed. From then on a side stays with its track, wherever the hand goes. A lone hand is on the side of the axis of
+the body or face on which it is seen, or else of the picture's middle: a guess, which its partner puts right.
 """
 
+import math
 from collections.abc import Iterable
-from typing import Literal, NamedTuple
+from dataclasses import dataclass, replace
+from typing import Final, Literal
 
-from lightgesture.features.track.association import Innovation, expect
-from lightgesture.features.track.evidence import blend
-from lightgesture.features.track.motion import (
-    BoxFilter,
-    BoxState,
-    Measured,
-    box_of,
-    hand_size,
-    measure,
-    meets,
-    start_state,
-    stop,
-)
-from lightgesture.features.track.settings import TrackSettings
-from lightgesture.features.track.sides import Basis
-from lightgesture.features.types import Box, HandRegion, Side, Track
+from lightgesture.features.track.kalman import BoxState, box_of, meets, start_box, stop, update_box
+from lightgesture.features.types import Box, HandRegion, Side
 
-Life = Literal["tentative", "confirmed", "lost"]
+MEMORY_S: Final = 0.2
+"""Time constant of the mean scores, seconds."""
+TENTATIVE_S: Final = 0.15
+"""Seconds after which the observation of a region ends that is gone or no longer scores like a hand."""
+COAST_S: Final = 0.1
+"""For so many seconds an unseen hand is taken to go on as it moved, then to rest."""
+MEET_S: Final = 0.35
+"""The same for a hand that meets the other one and may pass behind it, seconds."""
+SETTLE_S: Final = 0.5
+"""Seconds for which a pair must have been believed before its sides outlive it."""
+AXIS_CERTAINTY: Final = 0.9
+"""Certainty of the side of a lone hand that is told by the body's axis, 0 to 1."""
 
 
-class TrackState(NamedTuple):
-    """A track as the stage knows it. Times are seconds of the stage's own clock.
+@dataclass(frozen=True, slots=True, eq=False)
+class Match:
+    """What a track found: the region that has the number `index` among the candidates. extent: the box of the region
+    that is nearest to what was expected; squared: its squared Mahalanobis distance; leap: whether it is beyond the
+    gate."""
 
-    key: names the state, tentative ones too; never used twice. number: that of the track, 0 while tentative.
-    side, basis: the diver's own side and what it rests on; side_level: mean score of the pair it rests on.
-    motion: the filter's state. box, alternatives, confidence: of the last region. level: mean confidence.
-    since_s, seen_s: time of the first and last region; proved_s: when the track was last believed by its own or its
-    pair's score, or, while tentative, worth observing; hits: frames in which it was that. missed: frames since the
-    last region.
+    index: int
+    region: HandRegion
+    extent: Box
+    squared: float
+    leap: bool
 
-    A named tuple because each frame changes each track a few times, which is done three times as fast as with a
-    frozen dataclass.
+
+@dataclass(frozen=True, slots=True)
+class Track:
+    """One hand followed through the frames, or, without a number, a region under observation.
+
+    Times are seconds of the tracker's own clock.
     """
 
     key: int
-    number: int
-    life: Life
-    side: Side
-    basis: Basis
+    """Names the track, tentative ones too; never used twice."""
     motion: BoxState
+    """Filtered centre and size."""
     box: Box
-    alternatives: tuple[Box, ...]
+    """Position and size, source pixels: the region's own where it was seen, predicted where not."""
+    region: int | None
+    """Number of its region among the candidates of this frame, None where it was missed."""
     confidence: float
+    """The selector's confidence in its last region, 0 to 1."""
     level: float
+    """Mean of that confidence, the last frames counting most."""
+    seen_x: float
+    """x of the centre of its last region, source pixels."""
     since_s: float
+    """When its first region was seen."""
     seen_s: float
+    """When its last region was seen."""
     proved_s: float
-    side_level: float = 0.0
-    hits: int = 1
+    """When it was last believed by its own or its pair's score, or, while tentative, worth observing."""
+    alternatives: tuple[Box, ...] = ()
+    """Other extents of the region that was seen now, else none."""
     missed: int = 0
+    """Frames since its last region, 0 when seen now. Where it is above 0 there may be anything in the box, and no hand
+    may be read from it."""
+    hits: int = 1
+    """Frames in which it was worth observing while tentative."""
+    number: int = 0
+    """Grows by one at each birth, never used twice in a stream; 0 while tentative."""
+    side: Side = "right"
+    """The diver's own side, kept for the life of the track; only a guess is put right."""
+    basis: Literal["none", "middle", "axis", "pair"] = "none"
+    """What the side rests on: nothing yet, the picture's middle, the body's axis, both hands seen together."""
+    certainty: float = 1.0
+    """How sure the side is, 0 to 1: 1 where both hands were seen together, less for a lone hand. A factor on the
+    confidence of what is read."""
+    side_level: float = 0.0
+    """Mean score of the pair on which the side rests."""
 
-    @property
-    def x(self) -> float:
-        """Filtered x of the centre, source pixels."""
-        return self.motion[0].position
 
-    @property
-    def seen_x(self) -> float:
-        """x of the centre of the last region, source pixels."""
-        return self.box[0] + self.box[2] / 2
-
-
-def begin(key: int, region: HandRegion, now: float, settings: TrackSettings) -> TrackState:
+def begin(key: int, index: int, region: HandRegion, now: float) -> Track:
     """A tentative track of a region seen at `now` seconds."""
-    return TrackState(
+    return Track(
         key=key,
-        number=0,
-        life="tentative",
-        side="right",
-        basis="none",
-        motion=_started(region, settings),
+        motion=start_box(region.box),
         box=region.box,
-        alternatives=region.alternatives,
+        region=index,
         confidence=region.confidence,
         level=region.confidence,
+        seen_x=region.box[0] + region.box[2] / 2,
         since_s=now,
         seen_s=now,
         proved_s=now,
-    )
-
-
-def _started(region: HandRegion, settings: TrackSettings) -> BoxState:
-    measured = measure(region.box)
-    area = max(measured[2] * measured[3], 1.0)
-    return start_state(
-        measured,
-        settings.centre_noise**2 * area,
-        settings.size_noise**2 * area,
-        settings.centre_speed**2 * area,
-        settings.size_speed**2 * area,
-    )
-
-
-def predict(motion: BoxState, step: float, box_filter: BoxFilter, settings: TrackSettings) -> BoxState:
-    """Where the hand will be `step` seconds later."""
-    area = hand_size(motion) ** 2
-    return box_filter.predict(motion, step, settings.centre_density * area, settings.size_density * area)
-
-
-def innovation(motion: BoxState, settings: TrackSettings, leap: bool = False) -> Innovation:
-    """Where a predicted hand's region is expected; leap: as wide as for a new sign."""
-    area = hand_size(motion) ** 2
-    extra = settings.leap_noise**2 if leap else 0.0
-    return expect(motion, (settings.centre_noise**2 + extra) * area, (settings.size_noise**2 + extra) * area)
-
-
-def seen(
-    track: TrackState,
-    region: HandRegion,
-    measured: Measured,
-    now: float,
-    step: float,
-    box_filter: BoxFilter,
-    settings: TrackSettings,
-) -> TrackState:
-    """The track after its region was seen in the extent `measured`."""
-    area = hand_size(track.motion) ** 2
-    motion = box_filter.update(
-        track.motion, measured, settings.centre_noise**2 * area, settings.size_noise**2 * area
-    )
-    return _with_region(track, region, motion, now, step, settings)
-
-
-def leapt(
-    track: TrackState, region: HandRegion, now: float, step: float, settings: TrackSettings
-) -> TrackState:
-    """The track after its hand was found beyond the gate: what was known of its motion is void."""
-    return _with_region(track, region, _started(region, settings), now, step, settings)
-
-
-def _with_region(
-    track: TrackState, region: HandRegion, motion: BoxState, now: float, step: float, settings: TrackSettings
-) -> TrackState:
-    return track._replace(
-        life="tentative" if track.life == "tentative" else "confirmed",
-        motion=motion,
-        box=region.box,
         alternatives=region.alternatives,
+    )
+
+
+def seen(track: Track, match: Match, now: float, step: float) -> Track:
+    """The predicted track after it found its region; after a leap what was known of its motion is void."""
+    region = match.region
+    return replace(
+        track,
+        motion=start_box(region.box) if match.leap else update_box(track.motion, match.extent),
+        box=region.box,
+        region=match.index,
         confidence=region.confidence,
-        level=blend(track.level, region.confidence, step, settings.memory_s),
+        level=blend(track.level, region.confidence, step),
+        seen_x=region.box[0] + region.box[2] / 2,
         seen_s=now,
+        alternatives=region.alternatives,
         missed=0,
     )
 
 
-def unseen(
-    track: TrackState, others: Iterable[TrackState], now: float, step: float, settings: TrackSettings
-) -> TrackState:
-    """The track after a frame without its region. Its speed is believed for a moment only: a hand that goes on being
-    unseen has more likely stopped or turned than flown away; for longer where it meets another hand, behind which it
-    may pass. To what is under observation a frame without it counts as one that scores nothing."""
+def unseen(track: Track, others: Iterable[Track], now: float, step: float, picture: tuple[int, int]) -> Track:
+    """The predicted track after a frame of `picture` (width, height) without its region. Its speed is believed for a
+    moment only: a hand that goes on being unseen has more likely stopped or turned than flown away; for longer where it
+    meets one of the others, behind which it may pass. To what is under observation a frame without it counts as one
+    that scores nothing."""
     motion = track.motion
     is_met = any(meets(motion, other.motion) for other in others)
-    if now - track.seen_s > (settings.meet_s if is_met else settings.coast_s):
+    if now - track.seen_s > (MEET_S if is_met else COAST_S):
         motion = stop(motion)
-    if track.life == "tentative":
-        level = blend(track.level, 0.0, step, settings.memory_s)
-        return track._replace(motion=motion, level=level, missed=track.missed + 1)
-    return track._replace(life="lost", motion=motion, missed=track.missed + 1)
+    return replace(
+        track,
+        motion=motion,
+        box=box_of(motion, picture),
+        region=None,
+        level=track.level if track.number else blend(track.level, 0.0, step),
+        alternatives=(),
+        missed=track.missed + 1,
+    )
 
 
-def trust_s(track: TrackState, longest: float, settings: TrackSettings) -> float:
+def blend(level: float, value: float, step: float) -> float:
+    """The mean `level` after `value` was seen for `step` seconds."""
+    return value + (level - value) * math.exp(-step / MEMORY_S)
+
+
+def trust_s(track: Track, longest: float) -> float:
     """For how many seconds a track is trusted without proof: as long as it has been proved so far and a moment, at
     most `longest`. What was believed in a single frame ends soon, so that an error stays one."""
-    return min(longest, settings.tentative_s + track.proved_s - track.since_s)
+    return min(longest, TENTATIVE_S + track.proved_s - track.since_s)
 
 
-def is_over(track: TrackState, now: float, settings: TrackSettings) -> bool:
-    """Whether the track ends: unseen or unproved for too long."""
-    if track.life == "tentative":
-        return now - track.proved_s > settings.tentative_s
-    is_lost = now - track.seen_s > trust_s(track, settings.lost_s, settings)
-    return is_lost or now - track.proved_s > trust_s(track, settings.doubt_s, settings)
+def is_over(track: Track, now: float, lost_s: float, doubt_s: float) -> bool:
+    """Whether the track ends: unseen for `lost_s` or unproved for `doubt_s` seconds, or sooner if it is young."""
+    if not track.number:
+        return now - track.proved_s > TENTATIVE_S
+    return now - track.seen_s > trust_s(track, lost_s) or now - track.proved_s > trust_s(track, doubt_s)
 
 
-def to_track(track: TrackState, picture: tuple[int, int], certainty: float) -> Track:
-    """What others are told of a confirmed or lost track; picture: (width, height), pixels."""
-    box, alternatives = track.box, track.alternatives
-    if track.missed:
-        box, alternatives = box_of(track.motion, picture), ()
-    return Track(track.number, track.side, box, track.confidence, track.missed, alternatives, certainty)
+def with_pair_sides(first: Track, second: Track, level: float, margin: float) -> tuple[Track, Track]:
+    """Both tracks with the sides of two hands seen together, `level` being their mean score.
+
+    A side stays that a hand has had for a while from as good a pair as this, which has not more than `margin` above
+    it. One from a guess gives way, and one from a worse pair or a short one, which may have been a hand and another
+    thing.
+    """
+
+    def stays(track: Track) -> bool:
+        is_old = track.proved_s - track.since_s >= SETTLE_S
+        return track.basis == "pair" and is_old and track.side_level >= level - margin
+
+    if stays(first):
+        side = first.side
+    elif stays(second):
+        side = _opposite(second.side)
+    else:
+        side = "right" if first.motion[0].position <= second.motion[0].position else "left"
+    return (
+        replace(first, side=side, basis="pair", certainty=1.0, side_level=level),
+        replace(second, side=_opposite(side), basis="pair", certainty=1.0, side_level=level),
+    )
+
+
+def _opposite(side: Side) -> Side:
+    return "left" if side == "right" else "right"
+
+
+def with_lone_side(track: Track, axis: float | None, width: int, by_middle: float) -> Track:
+    """The track with a better guess of its side, if its side is a guess: made at its birth, by the picture's middle
+    if need be, and once more when the body's axis is first seen. It does not change as the hand moves on.
+
+    axis: x of the body's axis where it is seen; width: that of the picture, pixels; by_middle: certainty of a side that
+    is told by the picture's middle.
+    """
+    if track.basis in ("pair", "axis") or (track.basis == "middle" and axis is None):
+        return track
+    x = track.motion[0].position
+    if axis is None:
+        return replace(track, side="right" if x < width / 2 else "left", basis="middle", certainty=by_middle)
+    return replace(track, side="right" if x < axis else "left", basis="axis", certainty=AXIS_CERTAINTY)

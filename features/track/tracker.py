@@ -3,222 +3,244 @@
 What a frame does to the tracks, in order: all are predicted to its time; each finds its region or misses it; regions
 that may be hands come under observation as tentative tracks; pairs of tracks gather evidence; a believed pair, or
 without one a believed single hand, is confirmed, in the place of what it contradicts; what was unseen or unproved
-for too long ends. The arithmetic is in pure functions (`matching`, `births`, `evidence`, `track_state`); the stage
-holds the state and the clock.
+for too long ends. The arithmetic is in pure functions (`kalman`, `state`, `matching`, `births`); the tracker holds the
+state and the clock.
 """
 
 import math
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Final
 
-from lightgesture.features.find.settings import SelectorSettings
+from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
 from lightgesture.features.geometry import box_iou
-from lightgesture.features.track import births, matching
-from lightgesture.features.track import state as track_state
-from lightgesture.features.track.births import PairKey
-from lightgesture.features.track.evidence import PairEvidence, observe
-from lightgesture.features.track.matching import Found, Observed
-from lightgesture.features.track.motion import box_of, load_filter
+from lightgesture.features.track import births
+from lightgesture.features.track.births import PairEvidence, PairKey
+from lightgesture.features.track.kalman import box_of, predict_box
+from lightgesture.features.track.matching import Observed, look_at, match_tracks
 from lightgesture.features.track.settings import TrackSettings
-from lightgesture.features.track.sides import CERTAIN, Basis
-from lightgesture.features.track.state import TrackState
-from lightgesture.features.types import Box, Candidates, Track
+from lightgesture.features.track.state import (
+    Match,
+    Track,
+    begin,
+    is_over,
+    seen,
+    unseen,
+    with_lone_side,
+    with_pair_sides,
+)
+from lightgesture.features.types import Box, Candidates
+
+LONGEST_STEP_S: Final = 1.0
+"""A larger gap in time ends all tracks, seconds."""
+STALLED_STEP_S: Final = 1 / 30
+"""Seconds that count as passed where the time of a frame stands still, runs back or is no number."""
+STILL_IOU: Final = 0.6
+"""Overlap of the predicted box with the one found in it, from which a hand stands still enough for a look at the box to
+do, 0 to 1. Larger searches oftener, where hands move, and its boxes are truer."""
+WHOLE_ALONE_S: Final = 0.1
+"""The most that `TrackSettings.whole_s` is for a hand alone, so that the second one is found soon, seconds."""
+MOST_TENTATIVE: Final = 6
+"""Most regions under observation at a time; bounds the time."""
 
 
-class TrackStage:
+@dataclass(slots=True, eq=False)
+class _NextFrame:
+    """The tracks predicted `step` seconds ahead, and what they find there: what `update` need not do again.
+
+    hands: those with a number; tentative: those without. matching: the candidates that were last asked about, what
+    there is to see in them, and what each track found, by its key.
+    """
+
+    step: float
+    hands: list[Track]
+    tentative: list[Track]
+    matching: tuple[Candidates, Observed, dict[int, Match]] | None = None
+
+
+class Tracker:
     """Candidates of each frame -> at most two tracks, one a side.
 
-    Raises lightgesture.features.track.motion.FilterError where the filter of the settings is not there.
+    A frame is `update` alone, or `predict`, then a look at the predicted boxes, and `explains` to ask whether it was
+    enough, then `update`. The tracks are the same: asking changes nothing, and spares `update` what was done for it.
     """
 
     def __init__(
         self, settings: TrackSettings | None = None, selection: SelectorSettings | None = None
     ) -> None:
-        self.settings = settings or TrackSettings()
+        self._settings = settings or TrackSettings()
         self._selection = selection or SelectorSettings()
-        self._filter = load_filter(self.settings.filter)
-        self._certainty: dict[Basis, float] = {
-            CERTAIN: 1.0,
-            "axis": self.settings.axis_certainty,
-            "middle": self._selection.alone_confidence,
-        }
         self._next_number = 1
         self._next_key = 1
-        self.reset()
+        self._forget()
 
-    def reset(self) -> None:
+    def _forget(self) -> None:
         """Forget everything, as at the start of another stream; numbers go on."""
-        self._tracks: list[TrackState] = []
+        self._hands: list[Track] = []
+        self._tentative: list[Track] = []
         self._evidence: dict[PairKey, PairEvidence] = {}
         self._now = 0.0
         self._whole = -math.inf
         self._time_s: float | None = None
         self._size: tuple[int, int] | None = None
+        self._next: _NextFrame | None = None
 
-    def process(self, candidates: Candidates, time_s: float, *, whole: bool = True) -> tuple[Track, ...]:
+    def predict(self, time_s: float) -> tuple[Box, ...]:
+        """Where the hands should be in the frame at `time_s` seconds, source pixels.
+
+        Empty where the whole frame must be searched: without tracks, with one that is not seen just now, with a
+        region under observation, or when the last whole search is too long ago.
+        """
+        step = self._step_to(time_s)
+        if self._size is None or step > LONGEST_STEP_S:
+            self._next = None
+            return ()
+        hands = self._predicted(step).hands
+        longest = self._settings.whole_s
+        if len(hands) == 1:
+            longest = min(longest, WHOLE_ALONE_S)
+        is_due = self._now + step - self._whole > longest
+        if is_due or self._tentative or any(track.missed for track in hands):
+            return ()
+        picture = self._size
+        return tuple(box_of(track.motion, picture) for track in hands)
+
+    def explains(self, candidates: Candidates) -> bool:
+        """Whether each hand that is seen just now finds its region among these, about where `predict` said; False where
+        it was not asked. A hand that moved on was seen through a window beside it, and its box cannot be trusted."""
+        ahead, picture = self._next, self._size
+        if ahead is None or picture is None or candidates.source_size != picture:
+            return False
+        found = self._matched(ahead, candidates)[1]
+        for track in ahead.hands:
+            if track.missed:
+                continue
+            match = found.get(track.key)
+            if match is None or box_iou(box_of(track.motion, picture), match.region.box) < STILL_IOU:
+                return False
+        return True
+
+    def update(self, candidates: Candidates, time_s: float, whole: bool = True) -> tuple[Track, ...]:
         """Follow the hands into the next frame at `time_s` seconds: the tracks, the diver's right hand first.
 
         whole: whether the whole frame was searched, or only the windows. Time that stands still, runs back or is no
-        number counts as `stalled_step_s`; a long gap or a frame of another size starts anew.
+        number counts as STALLED_STEP_S; a long gap or a frame of another size starts anew.
         """
-        step = self._step(time_s)
-        if step > self.settings.longest_step_s or self._size not in (None, candidates.source_size):
-            self.reset()
+        step = self._step_to(time_s)
+        if step > LONGEST_STEP_S or self._size not in (None, candidates.source_size):
+            self._forget()
+        ahead = self._predicted(step)
+        observed, found = self._matched(ahead, candidates)
+        self._next = None
         self._now += step
         self._time_s = time_s if math.isfinite(time_s) else self._time_s
         self._size = candidates.source_size
         if whole:
             self._whole = self._now
-        observed = self._look_at(candidates)
-        self._tracks, owners = self._followed(observed, step)
-        self._observe_more(observed, owners)
-        self._gather_evidence(observed, owners, step)
+        held = births.held_level(self._hands, self._evidence)
+        self._follow(ahead, found, candidates.source_size)
+        self._observe(observed, held)
+        tracks = [*self._hands, *self._tentative]
+        least = self._selection.pair_score
+        self._evidence = births.gather(self._evidence, tracks, observed, self._now, step, least)
         self._confirm(candidates)
-        self._end(observed, owners)
-        return self._told(candidates.source_size)
+        self._end(observed)
+        return tuple(sorted(self._hands, key=attrgetter("side"), reverse=True))
 
-    def predictions(self, time_s: float) -> tuple[Box, ...]:
-        """Where the hands should be in the frame at `time_s`, source pixels; nothing changes.
-
-        Empty where the whole frame must be searched: without tracks, with one that is not seen just now, with a
-        region under observation, or when the last whole search is too long ago.
-        """
-        step = self._step(time_s)
-        is_alone = len(births.numbered(self._tracks)) == 1
-        longest = self.settings.whole_alone_s if is_alone else self.settings.whole_s
-        is_due = self._now + step - self._whole > longest or step > self.settings.longest_step_s
-        if self._size is None or is_due or any(track.life != "confirmed" for track in self._tracks):
-            return ()
-        moved = [
-            track_state.predict(track.motion, step, self._filter, self.settings) for track in self._tracks
-        ]
-        picture = self._size
-        return tuple(box_of(motion, picture) for motion in moved)
-
-    def explains(self, candidates: Candidates, time_s: float) -> bool:
-        """Whether each confirmed track would find its region among these at `time_s`, about where it was predicted;
-        nothing changes. A hand that moved on was seen through a window beside it, and its box cannot be trusted."""
-        step = self._step(time_s)
-        picture = self._size
-        if picture is None or candidates.source_size != picture or step > self.settings.longest_step_s:
-            return False
-        confirmed = [track for track in self._tracks if track.life == "confirmed"]
-        predicted, observed = self._predicted(confirmed, step), self._look_at(candidates)
-        found = self._match(predicted, observed, step)
-        if len(found) < len(confirmed):
-            return False
-        pairs = [
-            (box_of(predicted[place].motion, picture), observed.regions[item.region].box)
-            for place, item in found.items()
-        ]
-        return all(box_iou(one, other) >= self.settings.still_iou for one, other in pairs)
-
-    def _step(self, time_s: float) -> float:
+    def _step_to(self, time_s: float) -> float:
         """Seconds from the last frame to this one, above 0; 0 for the first frame."""
         if self._size is None:
             return 0.0
         step = math.nan if self._time_s is None else time_s - self._time_s
-        return step if math.isfinite(step) and step > 0.0 else self.settings.stalled_step_s
+        return step if math.isfinite(step) and step > 0.0 else STALLED_STEP_S
 
-    def _look_at(self, candidates: Candidates) -> Observed:
-        return matching.look_at(candidates, self._selection.pair_score, self.settings.considered)
+    def _predicted(self, step: float) -> _NextFrame:
+        """The tracks `step` seconds ahead; predicted once for the same step."""
+        if self._next is None or self._next.step != step:
+            hands = [replace(track, motion=predict_box(track.motion, step)) for track in self._hands]
+            others = [replace(track, motion=predict_box(track.motion, step)) for track in self._tentative]
+            self._next = _NextFrame(step, hands, others)
+        return self._next
 
-    def _predicted(self, tracks: list[TrackState], step: float) -> list[TrackState]:
-        return [
-            track._replace(motion=track_state.predict(track.motion, step, self._filter, self.settings))
-            for track in tracks
-        ]
+    def _matched(self, ahead: _NextFrame, candidates: Candidates) -> tuple[Observed, dict[int, Match]]:
+        """What there is to see in a frame, and what each track finds of it; matched once for the same candidates."""
+        if ahead.matching is not None and ahead.matching[0] is candidates:
+            return ahead.matching[1:]
+        selection, settings = self._selection, self._settings
+        observed = look_at(candidates, selection.pair_score)
+        leap_score = births.held_level(self._hands, self._evidence) - settings.margin
+        found = match_tracks(
+            ahead.hands,
+            ahead.tentative,
+            observed,
+            self._now + ahead.step,
+            settings.gate,
+            leap_score,
+            selection.single_score,
+        )
+        ahead.matching = candidates, observed, found
+        return observed, found
 
-    def _match(self, tracks: list[TrackState], observed: Observed, step: float) -> dict[int, Found]:
-        held = births.held_level(self._tracks, self._evidence)
-        return matching.match_tracks(tracks, observed, held, self._now + step, self.settings, self._selection)
+    def _follow(self, ahead: _NextFrame, found: dict[int, Match], picture: tuple[int, int]) -> None:
+        """Take over the predicted tracks, each with what it found in a frame of this size or without."""
 
-    def _followed(self, observed: Observed, step: float) -> tuple[list[TrackState], dict[int, int]]:
-        """The tracks with or without a region in this frame, and track key -> region."""
-        tracks = self._predicted(self._tracks, step)
-        found = self._match(tracks, observed, 0.0)
-        followed = []
-        for place, track in enumerate(tracks):
-            item = found.get(place)
-            if item is None:
-                others = [other for other in tracks if other.number and other.key != track.key]
-                followed.append(track_state.unseen(track, others, self._now, step, self.settings))
-                continue
-            region = observed.regions[item.region]
-            if item.leap:
-                followed.append(track_state.leapt(track, region, self._now, step, self.settings))
-            else:
-                followed.append(
-                    track_state.seen(
-                        track, region, item.measured, self._now, step, self._filter, self.settings
-                    )
-                )
-        return followed, {tracks[place].key: item.region for place, item in found.items()}
+        def followed(track: Track) -> Track:
+            match = found.get(track.key)
+            if match is not None:
+                return seen(track, match, self._now, ahead.step)
+            others = [other for other in ahead.hands if other.key != track.key]
+            return unseen(track, others, self._now, ahead.step, picture)
 
-    def _observe_more(self, observed: Observed, owners: dict[int, int]) -> None:
+        self._hands = [followed(track) for track in ahead.hands]
+        self._tentative = [followed(track) for track in ahead.tentative]
+
+    def _observe(self, observed: Observed, held: float) -> None:
         """Keep the regions that may be hands under observation, and take new ones while there is room."""
-        held = births.held_level(self._tracks, self._evidence)
-        worth = births.worth_observing(self._tracks, observed, held, self.settings, self._selection)
-        self._tracks = [
-            track._replace(proved_s=self._now, hits=track.hits + 1)
-            if not track.number and owners.get(track.key) in worth
-            else track
-            for track in self._tracks
+        worth = births.worth_observing(self._hands, observed, held + self._settings.margin, self._selection)
+        if not worth:
+            return
+        taken = {track.region for track in (*self._hands, *self._tentative)}
+        self._tentative = [
+            replace(track, proved_s=self._now, hits=track.hits + 1) if track.region in worth else track
+            for track in self._tentative
         ]
-        taken = set(owners.values())
-        room = self.settings.tentative - sum(not track.number for track in self._tracks)
-        for index in [index for index in worth if index not in taken][: max(room, 0)]:
-            track = track_state.begin(self._next_key, observed.regions[index], self._now, self.settings)
+        room = MOST_TENTATIVE - len(self._tentative)
+        for index in [index for index in worth if index not in taken][:room]:
+            self._tentative.append(begin(self._next_key, index, observed.regions[index], self._now))
             self._next_key += 1
-            self._tracks.append(track)
-            owners[track.key] = index
-
-    def _gather_evidence(self, observed: Observed, owners: dict[int, int], step: float) -> None:
-        """Scores of all pairs of tracks in this frame, 0 where not both were seen."""
-        least = self._selection.pair_score
-        keys = sorted(track.key for track in self._tracks)
-        gathered = {}
-        for place, first in enumerate(keys):
-            for second in keys[place + 1 :]:
-                known = self._evidence.get((first, second))
-                both = first in owners and second in owners
-                score = observed.together(owners[first], owners[second]) if both else 0.0
-                if known is not None or score >= least:
-                    gathered[first, second] = observe(known, score, self._now, step, least, self.settings)
-        self._evidence = gathered
 
     def _confirm(self, candidates: Candidates) -> None:
         """Give numbers and sides to what is believed, and drop what it contradicts."""
-        pair = births.believed_pair(self._tracks, self._evidence, self.settings, self._selection)
+        hands, tentative, selection = self._hands, self._tentative, self._selection
+        margin = self._settings.margin
+        pair = births.believed_pair(hands, tentative, self._evidence, selection.pair_score, margin)
         if pair is not None:
-            sided = births.with_pair_sides(*pair, self.settings)
-            self._keep(births.with_old_number(sided, self._tracks))
-        elif (single := births.believed_single(self._tracks, self.settings, self._selection)) is not None:
-            self._keep((single,))
-        width = candidates.source_size[0]
-        self._tracks = [births.with_lone_side(track, candidates.axis, width) for track in self._tracks]
+            self._keep(births.with_old_number(with_pair_sides(*pair, margin), hands))
+        else:
+            single = births.believed_single(hands, tentative, selection.single_score, margin)
+            if single is not None:
+                self._keep((single,))
+        axis, width = candidates.axis, candidates.source_size[0]
+        self._hands = [with_lone_side(track, axis, width, ALONE_CONFIDENCE) for track in self._hands]
 
-    def _keep(self, believed: tuple[TrackState, ...]) -> None:
+    def _keep(self, believed: tuple[Track, ...]) -> None:
         """Follow these, and of the others only what is under observation."""
-        kept = []
+        hands = []
         for track in believed:
             number = track.number
             if not number:
                 number, self._next_number = self._next_number, self._next_number + 1
-            kept.append(track._replace(number=number, life="confirmed", proved_s=self._now))
-        keys = {track.key for track in kept}
-        self._tracks = kept + [item for item in self._tracks if not item.number and item.key not in keys]
+            hands.append(replace(track, number=number, proved_s=self._now))
+        keys = {track.key for track in hands}
+        self._hands = hands
+        self._tentative = [track for track in self._tentative if track.key not in keys]
 
-    def _end(self, observed: Observed, owners: dict[int, int]) -> None:
-        present = [owners.get(track.key) for track in births.numbered(self._tracks)]
-        score = 0.0
-        if len(present) == 2 and present[0] is not None and present[1] is not None:
-            score = observed.together(present[0], present[1])
-        held = births.held_level(self._tracks, self._evidence)
-        tracks = births.proved(self._tracks, score, held, self._now, self.settings, self._selection)
-        self._tracks = [track for track in tracks if not track_state.is_over(track, self._now, self.settings)]
-
-    def _told(self, picture: tuple[int, int]) -> tuple[Track, ...]:
-        told = [
-            track_state.to_track(track, picture, self._certainty[track.basis])
-            for track in births.numbered(self._tracks)
-        ]
-        return tuple(sorted(told, key=lambda track: track.side, reverse=True))
+    def _end(self, observed: Observed) -> None:
+        """Note what was proved, and end the tracks that have not been for too long."""
+        now, lost_s, doubt_s = self._now, self._settings.lost_s, self._settings.doubt_s
+        hands = self._hands
+        score = observed.together(hands[0].region, hands[1].region) if len(hands) == 2 else 0.0
+        held = births.held_level(hands, self._evidence)
+        hands = births.proved(hands, score, held, now, doubt_s, self._selection)
+        self._hands = [track for track in hands if not is_over(track, now, lost_s, doubt_s)]
+        self._tentative = [track for track in self._tentative if not is_over(track, now, lost_s, doubt_s)]

@@ -1,203 +1,103 @@
-"""What `calibrate` does: some seconds of open hands become a colour profile, judged before it is written."""
+"""What `calibrate` does: a source is looked at, its profile judged, told of and written."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
 
-from lightgesture.errors import InputError
-from lightgesture.features.colour import ColourMap, ColourStage
-from lightgesture.features.find.selector import RegionStage, choose
-from lightgesture.features.profile import ColourProfile, Kind
-from lightgesture.features.profile_learning import learn_profile, proposed_share
-from lightgesture.features.types import Box, Image
-from lightgesture.frames import Frame
-from lightgesture.sources import Source
-
-Middle = Literal["middle"]
-
-Place = tuple[Box, ...] | Middle | None
-"""Where the hands are in every frame, source pixels; None to find them."""
+from lightgesture.calibration import Calibration, Place, calibrate
+from lightgesture.config.settings import DecodeSettings
+from lightgesture.console import print_line, say
+from lightgesture.errors import ExitStatus, InputError, UsageError
+from lightgesture.features.profile import Kind, save_profile
+from lightgesture.features.types import Box
+from lightgesture.results.atomic import replacing
+from lightgesture.sources import SourceOptions, StreamFrames, open_any
 
 
-@dataclass(frozen=True, slots=True)
-class CalibrationSettings:
-    """How a calibration is done.
+def run_calibrate(
+    source_name: str,
+    settings: DecodeSettings,
+    *,
+    kind: Kind,
+    seconds: float,
+    hands: Sequence[str],
+    out: str,
+    is_forced: bool,
+) -> ExitStatus:
+    """Learn, judge and write a profile.
 
-    seconds: of the source that are looked at, from its first frame, above 0; pictures without hands are passed over.
-    pictures: most pictures looked at, evenly in time, 4 to 100; two dozen are plenty, more only take longer.
-    least_pictures: fewest pictures with hands that are learnt from, 2 or more: half of them judge the other half.
-    least_separation: of a profile that is good, 0.5 to 1, see `ColourProfile.separation`. Rendered divers give 0.99 in
-        clear and turbid water with bare hands and with blue, green or red gloves, 0.90 with grey and white gloves in
-        turbid water; gloves of the colour of what is behind them give less than 0.7.
-    least_share: of hands proposed with a good profile, 0 to 1. Black gloves before a black suit have a separation of
-        0.92, and yet a region of their own in 0.3 of the pictures.
-    middle: side of the box in the middle of the picture, over the picture's shorter side, 0.1 to 0.6: where a hand is
-        that the user holds there, for want of one that is found.
+    seconds: of the source that are looked at. hands: where they are, as the user wrote it. is_forced: write a profile
+    that separates poorly too. InputError: there are no hands, or it separates poorly. UsageError: `hands` or `out`.
     """
-
-    seconds: float = 5.0
-    pictures: int = 24
-    least_pictures: int = 4
-    least_separation: float = 0.85
-    least_share: float = 0.5
-    middle: float = 0.35
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Shown:
-    """Hands in pictures: working pictures, and for each the boxes of its hands in its own pixels, at least one.
-
-    looked_at: pictures that were searched. hands: how many hands a picture shows, 1 or 2. broke_off: why the source
-    gave less than it was asked for, in words; None if it did not.
-    """
-
-    images: tuple[Image, ...]
-    boxes: tuple[tuple[Box, ...], ...]
-    looked_at: int
-    hands: int
-    broke_off: str | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Calibration:
-    """A profile and how well it separates.
-
-    share, share_without: share of hands that have a fitting region on the colour map, 0 to 1, with a profile learnt
-        from the other half of the pictures and with the map of skin colours.
-    lack: what it lacks, in words; None if it is good.
-    """
-
-    profile: ColourProfile
-    shown: Shown
-    share: float
-    share_without: float
-    lack: str | None
-
-
-def calibrate(
-    source: Source, kind: Kind, place: Place, settings: CalibrationSettings | None = None
-) -> Calibration:
-    """Learn a profile from an open source. InputError: no hands, or a source that cannot be read."""
-    settings = settings or CalibrationSettings()
-    shown = show_hands(source, place, settings)
-    return learn(shown, kind, f"{source.name}, {len(shown.images)} pictures", settings)
-
-
-def show_hands(source: Source, place: Place, settings: CalibrationSettings) -> Shown:
-    """Pictures of the first seconds that show hands: both where enough pictures do, else one."""
-    boxes_in = _Finder().boxes if place is None else _Placer(place, source.name, settings).boxes
-    found: list[tuple[Image, tuple[Box, ...]]] = []
-    pictures, broke_off = _look(source, settings)
-    for colour in pictures:
-        boxes = boxes_in(colour)
-        if boxes:
-            found.append((colour.picture, tuple(_reduced(box, colour.scale) for box in boxes)))
-    both = [item for item in found if len(item[1]) == 2]
-    chosen = both if len(both) >= settings.least_pictures else found
-    if len(chosen) < settings.least_pictures:
+    file, place = _out(out), _place(hands)
+    options = SourceOptions(settings.fps, settings.width_height, settings.topic)
+    with open_any(source_name, options) as source:
+        if isinstance(source, StreamFrames):
+            say(f"{source.name}: hold both open hands still before the camera for {seconds:g} s")
+        result = calibrate(source, kind, place, seconds)
+    for line in _report(result):
+        print_line(line)
+    if result.lack is not None and not is_forced:
         raise InputError(
-            f"{broke_off or source.name}: hands found in {len(found)} of {len(pictures)} pictures, "
-            f"{settings.least_pictures} are needed; hold both open hands still before the camera, "
-            "or say where they are with --hands"
+            f"{source.name}: {result.lack}; nothing is written. Show the hands before another background or in better "
+            "light, or write it all the same with --force"
         )
-    images, boxes_of = zip(*chosen, strict=True)
-    return Shown(images, boxes_of, len(pictures), max(len(boxes) for boxes in boxes_of), broke_off)
+    with replacing(file) as temporary:
+        save_profile(temporary, result.profile)
+    print_line(f"written      {file}; use it with: --profile {file}")
+    return ExitStatus.OK
 
 
-def learn(shown: Shown, kind: Kind, origin: str, settings: CalibrationSettings) -> Calibration:
-    """The profile of all pictures, judged by what each half of them teaches about the other."""
-    profile = learn_profile(shown.images, shown.boxes, kind, origin)
-    share = 0.0
-    for half in (0, 1):
-        taught = learn_profile(shown.images[half::2], shown.boxes[half::2], kind, origin)
-        share += proposed_share(shown.images[1 - half :: 2], shown.boxes[1 - half :: 2], taught) / 2
-    without = proposed_share(shown.images, shown.boxes)
-    return Calibration(profile, shown, share, without, _lack(profile.separation, share, settings))
+def _report(result: Calibration) -> list[str]:
+    """How well it separates, in plain words."""
+    shown, separation = result.shown, result.profile.separation
+    words = "well" if result.lack is None else "poorly"
+    lines = [
+        f"hands        {'both' if shown.hands == 2 else 'one'} in {len(shown.images)} of {shown.looked_at} pictures",
+        f"separation   {separation:.3f} (1 is perfect, 0.5 useless): this profile tells hands from all else {words}",
+        f"stand out    {result.share:.2f} of the hands with this profile, {result.share_without:.2f} with the map of "
+        "skin colours",
+    ]
+    if result.lack is None and result.share <= result.share_without:
+        lines.append("remark       the map of skin colours does as well here; no profile is needed")
+    if shown.broke_off is not None:
+        lines.append(f"remark       {shown.broke_off}; what came before was learnt from")
+    return lines
 
 
-def _lack(separation: float, share: float, settings: CalibrationSettings) -> str | None:
-    if separation < settings.least_separation:
-        return f"a separation of {separation:.2f} is below {settings.least_separation:g}"
-    if share < settings.least_share:
-        return f"only {share:.2f} of the hands stand out by it, fewer than {settings.least_share:g}"
-    return None
-
-
-class _Placer:
-    """Takes the boxes that the user named, the same in every picture."""
-
-    def __init__(self, place: Sequence[Box] | Middle, name: str, settings: CalibrationSettings) -> None:
-        self._place, self._name, self._middle = place, name, settings.middle
-
-    def boxes(self, colour: ColourMap) -> list[Box]:
-        """The boxes, source pixels. InputError: one is not within the picture."""
-        width, height = colour.source_size
-        if isinstance(self._place, str):
-            side = max(round(self._middle * min(height, width)), 1)
-            return [((width - side) // 2, (height - side) // 2, side, side)]
-        for x, y, wide, tall in self._place:
-            if x + wide > width or y + tall > height:
-                raise InputError(
-                    f"{self._name}: --hands {x},{y},{wide},{tall} is not within its pictures of "
-                    f"{width} x {height} pixels; give left edge, upper edge, width and height in pixels"
-                )
-        return list(self._place)
-
-
-class _Finder:
-    """Finds hands picture by picture with the learned choice, which needs no profile."""
-
-    def __init__(self) -> None:
-        self._stage = RegionStage("learned")
-
-    def boxes(self, colour: ColourMap) -> list[Box]:
-        """Boxes of both hands, of one, or of none, source pixels."""
-        hands = choose(self._stage.process(colour), self._stage.settings)
-        return [hand.box for hand in hands]
-
-
-def _look(source: Source, settings: CalibrationSettings) -> tuple[list[ColourMap], str | None]:
-    """Working pictures at even distances over the first seconds, and why these are fewer, if the source broke off.
-
-    At most twice as many as are wanted are held: where they overflow, every other one goes, and from there on only one
-    frame in twice as many is kept. A source that breaks off is good for what it gave, if that may be enough; else its
-    InputError is raised.
-    """
-    stage = ColourStage()
-    kept: list[ColourMap] = []
-    broke_off, stride, count = None, 1, 0
+def _out(text: str) -> Path:
+    """The file to write, refused before the diver holds still rather than after."""
+    path = Path(text)
+    if path.is_dir() or not path.name:
+        raise UsageError(f"{text}: is a folder; name a file with --out")
+    if not path.parent.is_dir():
+        raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
     try:
-        for frame in _first_seconds(source, settings.seconds):
-            if count % stride == 0:
-                kept.append(stage.process(frame.image))
-            if len(kept) == 2 * settings.pictures:
-                del kept[1::2]
-                stride *= 2
-            count += 1
-    except InputError as error:
-        if count < settings.least_pictures:
-            raise
-        broke_off = str(error)
-    taken = min(len(kept), settings.pictures)
-    return [kept[number * len(kept) // taken] for number in range(taken)], broke_off
+        with tempfile.TemporaryFile(dir=path.parent):
+            return path
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another folder") from None
 
 
-def _first_seconds(source: Source, seconds: float) -> Iterator[Frame]:
-    start_s = None
-    for frame in source:
-        start_s = frame.time_s if start_s is None else start_s
-        if frame.time_s - start_s > seconds:
-            return
-        yield frame
+def _place(texts: Sequence[str]) -> Place:
+    if not texts:
+        return None
+    if "middle" in texts:
+        if len(texts) > 1:
+            raise UsageError("--hands middle: goes with no other; give boxes or the middle")
+        return "middle"
+    if len(texts) > 2:
+        raise UsageError(f"--hands: {len(texts)} boxes; a diver has two hands, give one or two")
+    return tuple(_box(text) for text in texts)
 
 
-def _reduced(box: Box, scale: tuple[float, float]) -> Box:
-    """A box of source pixels in working pixels, at least one wide and high."""
-    x, y, width, height = box
-    across, down = scale
-    return (
-        round(x / across),
-        round(y / down),
-        max(round(width / across), 1),
-        max(round(height / down), 1),
-    )
+def _box(text: str) -> Box:
+    try:
+        x, y, width, height = (int(part) for part in text.split(","))
+    except ValueError:
+        x, y, width, height = -1, 0, 0, 0
+    if min(x, y) < 0 or min(width, height) < 1:
+        raise UsageError(
+            f"--hands {text}: is no box; give left edge, upper edge, width and height, as in 40,60,90,120"
+        )
+    return x, y, width, height

@@ -11,8 +11,7 @@ from pathlib import Path
 
 from lightgesture.archive.board import Board, table
 from lightgesture.archive.folder import open_archive_folder
-from lightgesture.archive.messages import Done, Hear, Message, Outcome
-from lightgesture.archive.tasks import Task, make_tasks
+from lightgesture.archive.tasks import Done, Hear, Message, Outcome, Task, make_tasks
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import one_line, say, write_message
 from lightgesture.errors import ExitStatus, UsageError

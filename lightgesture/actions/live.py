@@ -3,33 +3,35 @@
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_pipeline
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus
-from lightgesture.live.listener import Listener
-from lightgesture.live.loop import LiveLoop
-from lightgesture.live.mailbox import Mailbox
-from lightgesture.live.reader import Reader, Report
-from lightgesture.live.settings import LiveSettings
-from lightgesture.live.signals import Stopping, stop_signals
+from lightgesture.interruption import Stopping, stop_signals
+from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
+from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink, print_unbuffered
-from lightgesture.sources import LiveSource, SourceOptions, live_source
+from lightgesture.sources import SourceOptions, live_source
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
+
+
+HOLD_S: Final = 0.5
+"""Seconds for which a sign is held, unless the user or a grammar of the user's says otherwise."""
 
 
 def run_live(
     source_name: str,
     settings: DecodeSettings,
     listeners: Sequence[Listener] = (),
-    live_settings: LiveSettings | None = None,
+    heartbeat_s: float = HEARTBEAT_S,
 ) -> ExitStatus:
     """Decode a stream until it ends for good, nobody takes the records any more, or a signal asks for the end.
 
@@ -37,19 +39,22 @@ def run_live(
     if the reader of standard output went away and nobody else takes the records, or not one picture could be decoded.
     UsageError: the source, an option, the model or the grammar is wrong.
     """
-    live_settings = live_settings or LiveSettings()
     source = live_source(source_name, SourceOptions(size=settings.width_height))
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()
     clock = _make_clock()
     mailbox = Mailbox()
-    pipeline = open_pipeline(_for_pipeline(settings, live_settings), source.name, debug)
+    pipeline = open_pipeline(_for_pipeline(settings), source.name, debug)
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
-        outboxes = [stack.enter_context(_sending(sink, report)) for sink in sinks]
-        stack.enter_context(_reading(source, mailbox, clock, report, live_settings))
+        outboxes = [Outbox(sink, report) for sink in sinks]
+        reader = Reader(source, mailbox, clock, report)
+        parts: list[Outbox | Reader] = [*outboxes, reader]
+        for part in parts:
+            part.start()
+            stack.callback(part.stop)
         loop = LiveLoop(
             source.name,
             mailbox,
@@ -60,7 +65,7 @@ def run_live(
             listeners=listeners,
             frames=settings.frames,
             debug=debug,
-            settings=live_settings,
+            heartbeat_s=heartbeat_s,
         )
         loop.run(stopping)
     if not settings.quiet:
@@ -68,12 +73,12 @@ def run_live(
     return _status(loop, outboxes, stopping)
 
 
-def _for_pipeline(settings: DecodeSettings, live_settings: LiveSettings) -> DecodeSettings:
+def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
     a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
     changes: dict[str, object] = {"frames": True}
     if settings.hold is None and settings.hold_seconds is None and settings.grammar is None:
-        changes["hold_seconds"] = live_settings.hold_s
+        changes["hold_seconds"] = HOLD_S
     return settings.model_copy(update=changes)
 
 
@@ -118,29 +123,3 @@ def _make_report() -> Report:
             say(text)
 
     return report
-
-
-@contextmanager
-def _sending(sink: Sink, report: Report) -> Iterator[Outbox]:
-    outbox = Outbox(sink, report)
-    outbox.start()
-    try:
-        yield outbox
-    finally:
-        outbox.stop()
-
-
-@contextmanager
-def _reading(
-    source: LiveSource,
-    mailbox: Mailbox,
-    clock: Callable[[], float],
-    report: Report,
-    settings: LiveSettings,
-) -> Iterator[Reader]:
-    reader = Reader(source, mailbox, clock, report, settings)
-    reader.start()
-    try:
-        yield reader
-    finally:
-        reader.stop()

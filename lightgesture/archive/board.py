@@ -4,8 +4,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, Self
 
-from lightgesture.archive.messages import Advanced, Done, Message, Opened, Outcome, Printed
-from lightgesture.archive.tasks import Task
+from lightgesture.archive.tasks import Advanced, Done, Message, Opened, Outcome, Printed, Task
 from lightgesture.console import Bars, one_line, print_line, say
 
 

@@ -11,16 +11,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from lightgesture.archive.messages import Advanced, Done, Hear, Message, Outcome
 from lightgesture.archive.runner import Runner
-from lightgesture.archive.tasks import Task
-from lightgesture.config.settings import DecodeSettings
+from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Task
+from lightgesture.config.settings import DecodeSettings, change_paths
 from lightgesture.errors import UsageError
 
 CONNECT_S = 10.0
 """Seconds that a scheduler has to answer, and one of its workers to be there."""
 
-_PATHS = ("model", "profile", "grammar", "out", "debug_dir")
 _kept = threading.local()
 """Each thread of a Dask worker keeps its own runner: the nets are not to be shared by threads."""
 
@@ -107,9 +105,4 @@ def _connect(address: str) -> Iterator[Any]:
 
 def _absolute(settings: DecodeSettings) -> DecodeSettings:
     """The settings with paths that hold in any folder; names of built-in models stay."""
-    changed = {
-        key: os.path.abspath(value)
-        for key in _PATHS
-        if (value := getattr(settings, key)) is not None and value not in ("svm", "cnn")
-    }
-    return settings.model_copy(update=changed)
+    return settings.model_copy(update=change_paths(settings.model_dump(), os.path.abspath))

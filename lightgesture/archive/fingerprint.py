@@ -8,13 +8,12 @@ from pathlib import Path
 
 from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
-from lightgesture.config.settings import DecodeSettings
+from lightgesture.config.settings import BUILT_IN_MODELS, PATH_OPTIONS, DecodeSettings
 from lightgesture.sources import is_picture_name
 
 NO_INFLUENCE = frozenset({"as_json", "cluster", "jobs", "out", "quiet"})
 """Settings that change no file of results; any other, also one that is added later, makes them anew."""
 
-_FILES = ("model", "selector", "profile", "grammar")
 _ROOMS_WITH_DATA = ("features", "models")
 
 
@@ -35,9 +34,9 @@ def input_fingerprint(task: Task) -> str | None:
 def run_fingerprint(settings: DecodeSettings) -> str:
     """Of the version of this package, all settings that matter, and the content of the files that they name."""
     content = settings.model_dump(mode="json", exclude=set(NO_INFLUENCE))
-    for key in _FILES:
+    for key in PATH_OPTIONS:
         value = content.get(key)
-        if value is not None and os.path.isfile(value):
+        if value is not None and value not in BUILT_IN_MODELS and os.path.isfile(value):
             content[key] = hashlib.sha256(Path(value).read_bytes()).hexdigest()
     return _digest([__version__, content, *_bundled()])
 

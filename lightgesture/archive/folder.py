@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from lightgesture.archive.fingerprint import input_fingerprint, run_fingerprint
-from lightgesture.archive.messages import Outcome
-from lightgesture.archive.tasks import Task
+from lightgesture.archive.tasks import Outcome, Task
 from lightgesture.config.opening import make_folder
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError

@@ -10,8 +10,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from lightgesture.archive.messages import Advanced, Hear, Opened, Outcome, Printed
-from lightgesture.archive.tasks import Task
+from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Task
 from lightgesture.config.opening import make_debug_pictures, open_pipeline
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import InputError

@@ -1,15 +1,19 @@
-"""From the inputs of the command line to tasks, one for each stream of frames."""
+"""From the inputs of the command line to tasks, one for each stream of frames, and what is told of each: small frozen
+values that cross processes."""
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.results.stems import output_stems
 from lightgesture.sources import Source, is_picture_name, natural_key, open_source
 from lightgesture.sources.folder import FrameFolder
 from lightgesture.sources.standard_input import STANDARD_INPUT
+
+Status = Literal["ok", "failed", "done before"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,59 @@ class Task:
     def absolute(self) -> "Task":
         """The same for a process that runs in another folder."""
         return replace(self, path=os.path.abspath(self.path))
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of one input.
+
+    message: the error line of a failed one. seconds: spent on it. files: names of the files written.
+    """
+
+    status: Status
+    message: str | None = None
+    frames: int = 0
+    instructions: int = 0
+    rejected: int = 0
+    seconds: float = 0.0
+    files: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """The input at `place` was opened and promises `frames`; None where it does not say."""
+
+    place: int
+    frames: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Advanced:
+    """So many more frames of an input are done."""
+
+    place: int
+    frames: int
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """Lines of results of an input, for standard output."""
+
+    place: int
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Done:
+    """An input is finished; nothing comes after."""
+
+    place: int
+    outcome: Outcome
+
+
+Message = Opened | Advanced | Printed | Done
+Hear = Callable[[Message], None]
+"""Takes the messages of all inputs, in the order in which they come about."""
 
 
 def make_tasks(inputs: Sequence[str]) -> list[Task]:

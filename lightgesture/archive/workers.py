@@ -17,9 +17,8 @@ from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import SpawnContext
 
-from lightgesture.archive.messages import Advanced, Done, Hear, Message, Outcome, Printed
 from lightgesture.archive.runner import Runner
-from lightgesture.archive.tasks import Task
+from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Printed, Task
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.interruption import terminated_as_interrupted

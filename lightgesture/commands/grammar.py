@@ -2,24 +2,22 @@
 
 import argparse
 
-CHECK, SHOW, DRAW, EXPLAIN = "check", "show", "draw", "explain"
-ACTIONS = {
-    CHECK: "name all that is wrong with the file; 2 where there is anything",
-    SHOW: "print its signs, its table and its settings",
-    DRAW: "write its state graph as SVG or PNG",
-    EXPLAIN: "walk through a sequence of pairs step by step",
-}
 DEFAULT_OUT = "grammar.svg"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
-    for name, text in ACTIONS.items():
+    for name, text in (
+        ("check", "name all that is wrong with the file; 2 where there is anything"),
+        ("show", "print its signs, its table and its settings"),
+        ("draw", "write its state graph as SVG or PNG"),
+        ("explain", "walk through a sequence of pairs step by step"),
+    ):
         action = actions.add_parser(
             name, help=text, description=f"grammar {name}: {text}", allow_abbrev=False
         )
-        if name == EXPLAIN:
+        if name == "explain":
             action.add_argument(
                 "sequence",
                 metavar="PAIRS",
@@ -27,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             )
         action.add_argument("file", nargs="?", metavar="FILE", help="grammar file (default: the bundled one)")
         action.add_argument("--grammar", metavar="FILE", help="the same, as the decoding commands have it")
-        if name == DRAW:
+        if name == "draw":
             action.add_argument(
                 "--out",
                 metavar="FILE.svg|FILE.png",
@@ -38,29 +36,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Do what was asked for; 0 when the grammar is sound, 2 when it is not."""
-    from lightgesture.console import print_line
-    from lightgesture.errors import ExitStatus, UsageError
-    from lightgesture.fsm import GrammarError, load_grammar
-    from lightgesture.grammar.report import check, explain, show
+    from lightgesture.actions import grammar
+    from lightgesture.errors import UsageError
 
     if args.file is not None and args.grammar is not None:
         raise UsageError(f"{args.file}, {args.grammar}: two grammars; name one")
     path = args.grammar if args.file is None else args.file
-    try:
-        if args.action == CHECK:
-            lines, is_sound = check(path)
-        else:
-            grammar, is_sound = load_grammar(path), True
-            if args.action == SHOW:
-                lines = show(grammar)
-            elif args.action == EXPLAIN:
-                lines = explain(grammar, args.sequence)
-            else:
-                from lightgesture.grammar.drawing import draw
-
-                lines = [draw(grammar, args.out)]
-    except GrammarError as error:
-        raise UsageError(str(error)) from error
-    for line in lines:
-        print_line(line)
-    return ExitStatus.OK if is_sound else ExitStatus.USAGE
+    match args.action:
+        case "check":
+            return grammar.check_grammar(path)
+        case "show":
+            return grammar.show_grammar(path)
+        case "draw":
+            return grammar.draw_grammar(path, args.out)
+        case _:
+            return grammar.explain_pairs(path, args.sequence)

@@ -5,30 +5,26 @@ defaults.
 """
 
 import argparse
-import difflib
 import os
-import tomllib
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lightgesture.config.settings import DecodeSettings
+from lightgesture.config.settings import DECODING, DecodeSettings, change_paths
 from lightgesture.errors import UsageError
+from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
 
-_PATHS = ("grammar", "profile", "out", "debug_dir", "model", "mavlink_map")
 _HOLDS = ("hold", "hold_seconds")
-_BUILT_IN_MODELS = ("cnn", "svm")
 
 
 def add_options(parser: argparse.ArgumentParser, command: str) -> None:
-    """Declare `--config` and the options that `command` has; what is not given stays out of the result."""
+    """Declare the options of `command`, and `--config` if it decodes; what is not given stays out of the result."""
     for name, field in DecodeSettings.model_fields.items():
         extra: Any = field.json_schema_extra
-        if extra["only"] and command not in extra["only"]:
+        if command not in extra["only"]:
             continue
         key = field.alias or name
         kind: dict[str, Any] = {"metavar": extra["metavar"]}
@@ -39,9 +35,9 @@ def add_options(parser: argparse.ArgumentParser, command: str) -> None:
         parser.add_argument(
             _flag(key), dest=key, default=argparse.SUPPRESS, help=_help(field, extra["metavar"]), **kind
         )
-    parser.add_argument(
-        "--config", metavar="FILE", help="TOML file with any of these options; the command line goes first"
-    )
+    if command in DECODING:
+        text = "TOML file with any of these options; the command line goes first"
+        parser.add_argument("--config", metavar="FILE", help=text)
 
 
 def load_settings(args: argparse.Namespace) -> DecodeSettings:
@@ -51,7 +47,8 @@ def load_settings(args: argparse.Namespace) -> DecodeSettings:
     """
     known = {field.alias or name for name, field in DecodeSettings.model_fields.items()}
     given = {key: value for key, value in vars(args).items() if key in known}
-    config = {} if args.config is None else read_config(args.config)
+    file = getattr(args, "config", None)
+    config = {} if file is None else read_config(file)
     _check_holds(given, "", _flag)
     for key, other in zip(_HOLDS, reversed(_HOLDS), strict=True):
         if key in given:
@@ -68,29 +65,17 @@ def read_config(path: str) -> dict[str, Any]:
     Keys are the options' names, with `_` or `-`; a relative path in it starts at the file's own folder.
     UsageError: it cannot be read, is no TOML, or has a wrong key or value.
     """
-    content = {key.replace("-", "_"): value for key, value in _read_toml(path).items()}
     try:
+        written = read_toml(path, "configuration", "deploy/lightgesture.toml")
+        content = {key.replace("-", "_"): value for key, value in written.items()}
         DecodeSettings.model_validate(content, strict=True)
+    except TomlError as error:
+        raise UsageError(f"{path}: {error}") from None
     except ValidationError as error:
         raise UsageError(f"{path}: {_explain(error, str)}") from None
     _check_holds(content, f"{path}: ", str)
     folder = os.path.dirname(path)
-    for key in _PATHS:
-        if key in content and content[key] not in _BUILT_IN_MODELS:
-            content[key] = os.path.join(folder, content[key])
-    return content
-
-
-def _read_toml(path: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read ({error.strerror}); name a TOML file") from None
-    except UnicodeDecodeError:
-        raise UsageError(f"{path}: is no UTF-8 text; save the configuration as UTF-8") from None
-    except (ValueError, RecursionError) as error:  # TOML syntax is a ValueError too
-        reason = str(error) or "too deeply nested"
-        raise UsageError(f"{path}: is no valid TOML ({reason}); write lines such as hold = 10") from None
+    return content | change_paths(content, lambda name: os.path.join(folder, name))
 
 
 def _check_holds(given: Mapping[str, Any], place: str, show: Callable[[str], str]) -> None:
@@ -115,12 +100,10 @@ def _explain(error: ValidationError, show: Any) -> str:
 def _explain_one(detail: ErrorDetails, show: Any) -> str:
     key = str(detail["loc"][0])
     if detail["type"] == "extra_forbidden":
-        return f"{key}: unknown key; {_suggest(key)}"
+        known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
+        return f"{key}: unknown key; {suggest_key(key, known)}"
     shown = repr(detail["input"])[:60]
+    if detail["type"] == "string_pattern_mismatch":
+        extra: Any = DecodeSettings.model_fields[key].json_schema_extra
+        return f"{show(key)}: should be {extra['metavar']}, not {shown}; change it"
     return f"{show(key)}: {detail['msg'].replace('Input should', 'should')}, not {shown}; change it"
-
-
-def _suggest(key: str) -> str:
-    known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
-    close = difflib.get_close_matches(key, known, n=1)
-    return f"did you mean '{close[0]}'?" if close else "known are " + ", ".join(known)

@@ -1,11 +1,11 @@
 """Every option of the decoding commands with its range and its effect, as one model."""
 
+from collections.abc import Callable, Mapping
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-DEFAULT_FPS = 30.0
-"""Frames a second of folders of frames; that of `open_source`, whose module is too heavy for `--help`."""
+from lightgesture.config import DEFAULT_FPS
 
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""
@@ -22,15 +22,26 @@ MAX_FPS = 1000.0
 DECODE = "decode"
 RECOGNIZE = "recognize"
 LIVE = "live"
+CALIBRATE = "calibrate"
+DECODING = (DECODE, RECOGNIZE, LIVE)
 STREAMS = (DECODE, LIVE)
 """The commands whose pictures follow each other in time."""
 
+BUILT_IN_MODELS = ("cnn", "svm")
+"""Names that `--model` knows; any other is the path of a file."""
+
 
 def _option(
-    default: Any, text: str, metavar: str | None = None, *, only: tuple[str, ...] = (), **checks: Any
+    default: Any,
+    text: str,
+    metavar: str | None = None,
+    *,
+    only: tuple[str, ...] = DECODING,
+    kind: Literal["path", ""] = "",
+    **checks: Any,
 ) -> Any:
-    """A field that is an option too; `only`: the commands that have it on their command line, none for all."""
-    extra: Any = {"metavar": metavar, "only": only}
+    """A field that is an option too; `only`: the commands that have it. kind: "path" of a file or a folder."""
+    extra: Any = {"metavar": metavar, "only": only, "kind": kind}
     return Field(default=default, description=text, json_schema_extra=extra, **checks)
 
 
@@ -39,14 +50,22 @@ class DecodeSettings(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    model: str = _option("cnn", "classifier: cnn, svm or a model file", "cnn|svm|PATH", min_length=1)
+    model: str = _option(
+        "cnn", "classifier: cnn, svm or a model file", "cnn|svm|PATH", kind="path", min_length=1
+    )
     selector: Literal["learned", "classical"] = _option(
         "learned", "how hands are found: learned (small nets) or classical (no net)", "learned|classical"
     )
     profile: str | None = _option(
-        None, "colour profile of the diver's hands or gloves (default: any skin)", "FILE", min_length=1
+        None,
+        "colour profile of the diver's hands or gloves (default: any skin)",
+        "FILE",
+        kind="path",
+        min_length=1,
     )
-    grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", only=STREAMS)
+    grammar: str | None = _option(
+        None, "grammar file (default: the bundled one)", "FILE", kind="path", only=STREAMS
+    )
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
@@ -69,7 +88,7 @@ class DecodeSettings(BaseModel):
         DEFAULT_FPS,
         f"frames a second of folders of frames; videos have their own time (default: {DEFAULT_FPS:g})",
         "F",
-        only=(DECODE,),
+        only=(DECODE, CALIBRATE),
         gt=0,
         le=MAX_FPS,
         allow_inf_nan=False,
@@ -80,6 +99,7 @@ class DecodeSettings(BaseModel):
         None,
         "write DIR/<input stem>.jsonl, .csv and .vtt (subtitles) of each input; what is there and up to date stays",
         "DIR",
+        kind="path",
         only=(DECODE,),
         min_length=1,
     )
@@ -108,11 +128,11 @@ class DecodeSettings(BaseModel):
         None,
         "width and height in pixels: of raw BGR pictures on standard input; asked of a camera",
         "WxH",
-        only=STREAMS,
+        only=(*STREAMS, CALIBRATE),
         pattern=r"^[1-9][0-9]{0,4}x[1-9][0-9]{0,4}$",
     )
     topic: str | None = _option(
-        None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE,), min_length=1
+        None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE, CALIBRATE), min_length=1
     )
     udp: list[str] = _option(
         [], "send the records as JSON datagrams too (repeatable)", "HOST:PORT", only=(LIVE,)
@@ -124,7 +144,11 @@ class DecodeSettings(BaseModel):
         only=(LIVE,),
     )
     mavlink_map: str | None = _option(
-        None, "values and commands that instructions send by MAVLink (default: none)", "FILE", only=(LIVE,)
+        None,
+        "values and commands that instructions send by MAVLink (default: none)",
+        "FILE",
+        kind="path",
+        only=(LIVE,),
     )
     hook: list[str] = _option(
         [],
@@ -148,7 +172,11 @@ class DecodeSettings(BaseModel):
         min_length=1,
     )
     debug_dir: str | None = _option(
-        None, "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png", "DIR", min_length=1
+        None,
+        "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png",
+        "DIR",
+        kind="path",
+        min_length=1,
     )
     quiet: bool = _option(False, "no progress and no remarks on standard error")
 
@@ -159,3 +187,17 @@ class DecodeSettings(BaseModel):
             return None
         width, _, height = self.size.partition("x")
         return int(width), int(height)
+
+
+PATH_OPTIONS = tuple(
+    name
+    for name, field in DecodeSettings.model_fields.items()
+    if isinstance(field.json_schema_extra, dict) and field.json_schema_extra["kind"] == "path"
+)
+"""Fields that name files and folders."""
+
+
+def change_paths(values: Mapping[str, Any], change: Callable[[str], str]) -> dict[str, str]:
+    """The paths among the values of options, each as `change` makes it; names of built-in models are none."""
+    given = {name: values.get(name) for name in PATH_OPTIONS}
+    return {name: change(path) for name, path in given.items() if path and path not in BUILT_IN_MODELS}

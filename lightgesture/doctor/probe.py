@@ -12,8 +12,6 @@ from typing import Any
 
 FIRST = "first record"
 ONLY_FIRST = "--only-first"
-CLASSIFIERS = ("cnn", "svm")
-"""Names that `--model` knows; a model file has any other."""
 VIDEO_BACKENDS = ("FFMPEG", "GSTREAMER", "V4L2")
 """What OpenCV reads with: video files and network streams, pipelines, cameras of Linux."""
 KIB_PER_MIB = 1024
@@ -32,6 +30,7 @@ def main(arguments: list[str]) -> int:
 
 def _decode(is_first_only: bool) -> dict[str, Any]:
     from lightgesture.actions.decode import SAMPLE
+    from lightgesture.config.settings import BUILT_IN_MODELS
     from lightgesture.fsm import Instruction
     from lightgesture.pipeline import Pipeline
     from lightgesture.sources import open_source
@@ -55,7 +54,7 @@ def _decode(is_first_only: bool) -> dict[str, Any]:
         "ms_per_frame": summary["ms_per_frame"],
         "peak_mib": peak_mib(),
         "video": _video_backends(),
-        "classifiers": {name: _classifier(name) for name in CLASSIFIERS},
+        "classifiers": {name: _classifier(name) for name in BUILT_IN_MODELS},
         "nets": _nets(),
     }
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from lightgesture.actions.doctor import Report
+from lightgesture.doctor.examination import Report
 from lightgesture.doctor.facts import PACKAGE, Extra, Machine
 
 _WIDTH = 13

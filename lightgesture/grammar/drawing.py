@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Grammar
@@ -12,26 +13,32 @@ from lightgesture.results.atomic import replacing
 
 Point = tuple[float, float]
 
-MAX_STATES = 400
+MAX_STATES: Final = 400
 """Most states that are drawn: nobody could read more."""
 
 
-@dataclass(frozen=True, slots=True)
-class DrawingSettings:
-    """Sizes in pixels.
+# Sizes in pixels.
 
-    radius: of a state. row: between the middles of two states of a column. gap: between two columns, beside the
-    longest word between them. margin: round the graph. letter, line: width and height of the text; label: letters after
-    which the words at an arrow go to the next line.
-    """
+RADIUS: Final = 20.0
+"""Of a state."""
 
-    radius: float = 20.0
-    row: float = 100.0
-    gap: float = 96.0
-    margin: float = 60.0
-    letter: float = 7.2
-    line: float = 14.0
-    label: int = 14
+ROW: Final = 100.0
+"""Between the middles of two states of a column."""
+
+GAP: Final = 96.0
+"""Between two columns, beside the longest word between them."""
+
+MARGIN: Final = 60.0
+"""Round the graph."""
+
+LETTER: Final = 7.2
+"""Width of a letter."""
+
+LINE: Final = 14.0
+"""Height of a line of text."""
+
+LABEL_LETTERS: Final = 14
+"""Letters after which the words at an arrow go to the next line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,35 +67,35 @@ def draw(grammar: Grammar, out: str) -> str:
         raise UsageError(f"{out}: unknown kind of picture; end the name with .svg or .png")
     if len(grammar.table.transitions) > MAX_STATES:
         raise UsageError(f"{grammar.file}: has over {MAX_STATES} states; draw a smaller grammar")
-    graph = lay_out(grammar, DrawingSettings())
+    graph = lay_out(grammar)
     content = to_svg(graph) if suffix == ".svg" else to_png(graph)
     with replacing(Path(out)) as temporary:
         temporary.write_bytes(content)
     return f"{out}: {len(grammar.table.transitions)} states"
 
 
-def lay_out(grammar: Grammar, settings: DrawingSettings) -> Graph:
+def lay_out(grammar: Grammar) -> Graph:
     """Where everything goes."""
     rows = [targets(row) for row in grammar.table.transitions]
     depths = _depths(rows)
-    labels = [{target: _wrap(words, settings.label) for target, words in row.items()} for row in rows]
-    places = _places(depths, labels, settings)
+    labels = [{target: _wrap(words, LABEL_LETTERS) for target, words in row.items()} for row in rows]
+    places = _places(depths, labels)
     arrows: list[tuple[Point, ...]] = []
     texts: list[Text] = []
     for state, row in enumerate(labels):
         for target, lines in row.items():
-            path, middle = _arrow(places[state], places[target], depths[target] - depths[state], settings)
+            path, middle = _arrow(places[state], places[target], depths[target] - depths[state])
             arrows.append(path)
             texts.append(Text(middle, lines, is_label=True))
-    circles = [(place, settings.radius) for place in places]
+    circles = [(place, RADIUS) for place in places]
     for state, form in grammar.table.accepting.items():
-        circles.append((places[state], settings.radius - 4.0))
+        circles.append((places[state], RADIUS - 4.0))
         x, y = places[state]
-        beside = settings.radius + settings.letter * (len(form.kind) / 2 + 1)
+        beside = RADIUS + LETTER * (len(form.kind) / 2 + 1)
         texts.append(Text((x + beside, y), (form.kind,)))
     texts += [Text(place, (str(state) if state else "idle",)) for state, place in enumerate(places)]
-    width = max(x for x, _ in places) + settings.margin * 2.0
-    height = max(y for _, y in places) + settings.margin
+    width = max(x for x, _ in places) + MARGIN * 2.0
+    height = max(y for _, y in places) + MARGIN
     return Graph((math.ceil(width), math.ceil(height)), tuple(arrows), tuple(circles), tuple(texts))
 
 
@@ -104,23 +111,21 @@ def _depths(rows: Sequence[dict[int, list[str]]]) -> list[int]:
     return depths
 
 
-def _places(
-    depths: Sequence[int], labels: Sequence[dict[int, tuple[str, ...]]], settings: DrawingSettings
-) -> list[Point]:
+def _places(depths: Sequence[int], labels: Sequence[dict[int, tuple[str, ...]]]) -> list[Point]:
     columns = [
         [state for state, depth in enumerate(depths) if depth == column] for column in range(max(depths) + 1)
     ]
     tallest = max(map(len, columns))
     places: list[Point] = [(0.0, 0.0)] * len(depths)
-    x = settings.margin
+    x = MARGIN
     for column in columns:
-        top = settings.margin + settings.row * (tallest - len(column)) / 2
+        top = MARGIN + ROW * (tallest - len(column)) / 2
         for order, state in enumerate(column):
-            places[state] = (x, top + order * settings.row)
+            places[state] = (x, top + order * ROW)
         longest = max(
             (len(line) for state in column for lines in labels[state].values() for line in lines), default=0
         )
-        x += settings.gap + longest * settings.letter
+        x += GAP + longest * LETTER
     return places
 
 
@@ -134,12 +139,12 @@ def _wrap(words: Sequence[str], letters: int) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def _arrow(start: Point, end: Point, step: int, settings: DrawingSettings) -> tuple[tuple[Point, ...], Point]:
+def _arrow(start: Point, end: Point, step: int) -> tuple[tuple[Point, ...], Point]:
     """The path from state to state, and where its words go; step: columns to the right."""
-    (x, y), radius = start, settings.radius
+    x, y = start
     if start == end:
-        loop = [_on_circle((x, y - radius * 1.6), radius * 0.8, 110 + 32 * turn) for turn in range(11)]
-        return tuple(loop), (x, y - radius * 2.6)
+        loop = [_on_circle((x, y - RADIUS * 1.6), RADIUS * 0.8, 110 + 32 * turn) for turn in range(11)]
+        return tuple(loop), (x, y - RADIUS * 2.6)
     bow = 0.0 if step == 1 else 34.0 * (1 if step > 1 else -1)
     across, down = end[0] - x, end[1] - y
     length = math.hypot(across, down)
@@ -147,7 +152,7 @@ def _arrow(start: Point, end: Point, step: int, settings: DrawingSettings) -> tu
     top = (x + across / 2 + normal[0] * bow * 2, y + down / 2 + normal[1] * bow * 2)
     curve = [_bezier(start, top, end, part / 24) for part in range(25)]
     outside = [
-        point for point in curve if math.dist(point, start) >= radius and math.dist(point, end) >= radius
+        point for point in curve if math.dist(point, start) >= RADIUS and math.dist(point, end) >= RADIUS
     ]
     return tuple(outside), (x + across / 2 + normal[0] * bow, y + down / 2 + normal[1] * bow)
 
@@ -169,18 +174,17 @@ def _head(path: Sequence[Point]) -> list[Point]:
     return [path[-1], _on_circle(path[-1], 9.0, angle + 22), _on_circle(path[-1], 9.0, angle - 22)]
 
 
-def _ground(text: Text, settings: DrawingSettings) -> tuple[float, float, float, float]:
+def _ground(text: Text) -> tuple[float, float, float, float]:
     """x, y, width and height of the ground of a label."""
-    width = max(map(len, text.lines)) * settings.letter + 4.0
-    height = len(text.lines) * settings.line + 2.0
+    width = max(map(len, text.lines)) * LETTER + 4.0
+    height = len(text.lines) * LINE + 2.0
     return text.middle[0] - width / 2, text.middle[1] - height / 2, width, height
 
 
-def to_svg(graph: Graph, settings: DrawingSettings | None = None) -> bytes:
+def to_svg(graph: Graph) -> bytes:
     """The graph as SVG."""
     from xml.etree import ElementTree
 
-    settings = settings or DrawingSettings()
     width, height = graph.size
     root = ElementTree.Element("svg", {"xmlns": "http://www.w3.org/2000/svg"})
     root.attrib |= {"viewBox": f"0 0 {width} {height}", "width": str(width), "height": str(height)}
@@ -200,10 +204,10 @@ def to_svg(graph: Graph, settings: DrawingSettings | None = None) -> bytes:
         add("circle", cx=x, cy=y, r=radius, fill="white", stroke="black", stroke_width=1.5)
     for text in graph.texts:
         if text.is_label:
-            x, y, wide, tall = _ground(text, settings)
+            x, y, wide, tall = _ground(text)
             add("rect", x=x, y=y, width=wide, height=tall, fill="white", fill_opacity="0.85")
         for order, line in enumerate(text.lines):
-            y = text.middle[1] + (order - (len(text.lines) - 1) / 2) * settings.line + 4.0
+            y = text.middle[1] + (order - (len(text.lines) - 1) / 2) * LINE + 4.0
             element = add(
                 "text", x=text.middle[0], y=y, text_anchor="middle", font_family="monospace", font_size=12.0
             )
@@ -215,12 +219,11 @@ def _points(path: Sequence[Point]) -> str:
     return " ".join(f"{x:.1f},{y:.1f}" for x, y in path)
 
 
-def to_png(graph: Graph, settings: DrawingSettings | None = None, scale: int = 2) -> bytes:
+def to_png(graph: Graph, scale: int = 2) -> bytes:
     """The graph as PNG, `scale` pixels for each of its own."""
     import cv2
     import numpy as np
 
-    settings = settings or DrawingSettings()
     width, height = graph.size
     picture = np.full((height * scale, width * scale, 3), 255, np.uint8)
 
@@ -239,11 +242,11 @@ def to_png(graph: Graph, settings: DrawingSettings | None = None, scale: int = 2
     font, size = cv2.FONT_HERSHEY_SIMPLEX, 0.37 * scale
     for text in graph.texts:
         if text.is_label:
-            x, y, wide, tall = _ground(text, settings)
+            x, y, wide, tall = _ground(text)
             cv2.rectangle(picture, pixel((x, y)), pixel((x + wide, y + tall)), white, -1)
         for order, line in enumerate(text.lines):
             (wide, _), _ = cv2.getTextSize(line, font, size, 1)
-            y = text.middle[1] + (order - (len(text.lines) - 1) / 2) * settings.line + 4.0
+            y = text.middle[1] + (order - (len(text.lines) - 1) / 2) * LINE + 4.0
             place = (round(text.middle[0] * scale - wide / 2), round(y * scale))
             cv2.putText(picture, line, place, font, size, black, 1, cv2.LINE_AA)
     return bytes(cv2.imencode(".png", picture)[1])

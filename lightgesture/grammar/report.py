@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 
 from lightgesture.errors import UsageError
-from lightgesture.fsm import Decoder, Event, Grammar, inspect_grammar
-from lightgesture.fsm.forms import is_digit, split_carrier
+from lightgesture.fsm import Decoder, Event, Grammar, Signs, inspect_grammar
+from lightgesture.fsm.language.forms import is_digit, split_carrier
 
 Path = str | None
 
@@ -67,7 +67,7 @@ def explain(grammar: Grammar, sequence: str) -> list[str]:
     decoder = Decoder(grammar, hold=1)
     lines = []
     for number, (left, right) in enumerate(pairs, start=1):
-        events = decoder.step(left, right, 0.0) + decoder.step(None, None, 0.0)
+        events = decoder.step(Signs.of_tokens(left, right), 0.0) + decoder.step(Signs(), 0.0)
         lines.append(f"{number}. {left},{right}: {'; '.join(_tell(events)) or 'nothing'}")
         lines.append(f"   {decoder.sentence or decoder.state}; expected: {decoder.expected}")
     return lines

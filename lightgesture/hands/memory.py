@@ -24,7 +24,7 @@ class ReadingMemory:
     half of what is looked at, and goes from one sign to the next in one step.
     """
 
-    def __init__(self, frames: int, seconds: float = math.inf) -> None:
+    def __init__(self, frames: int = 1, seconds: float = math.inf) -> None:
         self._frames, self._seconds = frames, seconds
         self._rows: dict[int, deque[tuple[float, NDArray[np.float32]]]] = {}
 

@@ -7,7 +7,8 @@ import cv2
 import numpy as np
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.types import Candidates, Image, Track
+from lightgesture.features.track.state import Track
+from lightgesture.features.types import Candidates, Image
 from lightgesture.records import Hand
 
 _GREEN, _YELLOW, _RED, _WHITE = (60, 220, 60), (0, 220, 255), (60, 60, 255), (255, 255, 255)
@@ -63,8 +64,15 @@ def draw_tracks(image: Image, tracks: Sequence[Track]) -> Image:
     return picture
 
 
-def draw_hands(image: Image, hands: Sequence[Hand], text: str = "") -> Image:
-    """Boxes with tokens, red where refused, and a line of text at the bottom."""
+def with_text(image: Image, text: str) -> Image:
+    """The picture with a line of text at the bottom."""
+    picture = image.copy()
+    draw_label(picture, text, (8, picture.shape[0] - 10), _WHITE)
+    return picture
+
+
+def draw_hands(image: Image, hands: Sequence[Hand]) -> Image:
+    """Boxes with tokens, red where refused."""
     picture = image.copy()
     for hand in hands:
         x, y, width, height = hand.box
@@ -72,6 +80,4 @@ def draw_hands(image: Image, hands: Sequence[Hand], text: str = "") -> Image:
         cv2.rectangle(picture, (x, y), (x + width, y + height), colour, 2)
         label = hand.token if hand.token is not None else str(hand.reason)
         draw_label(picture, f"{hand.side}: {label} {hand.confidence:.2f}", (x, y - 4), colour)
-    if text:
-        draw_label(picture, text, (8, picture.shape[0] - 10), _WHITE)
     return picture

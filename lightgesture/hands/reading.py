@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,20 +34,33 @@ class ReadingSettings:
     crowded_factor: float = 0.9
 
 
-@dataclass(frozen=True, slots=True)
-class Sighting:
-    """A hand to be read.
+class HandInView(Protocol):
+    """What a hand must have to be read: a track, or a region on its own, whose side is known."""
 
-    boxes: its extents, source pixels, the likeliest first; at least one. track: number, None in single pictures.
-    certainty: factor on the confidence, 1 where the side is known. is_crowded: before a face, or another hand is in its
-    box.
-    """
+    @property
+    def number(self) -> int | None:
+        """Of its track; None in a picture on its own."""
+        ...
 
-    side: Side
-    boxes: tuple[Box, ...]
-    track: int | None
-    certainty: float = 1.0
-    is_crowded: bool = False
+    @property
+    def side(self) -> Side | None:
+        """The diver's own."""
+        ...
+
+    @property
+    def box(self) -> Box:
+        """Its likeliest extent, source pixels."""
+        ...
+
+    @property
+    def alternatives(self) -> tuple[Box, ...]:
+        """Its other extents."""
+        ...
+
+    @property
+    def certainty(self) -> float:
+        """How sure the side is, 0 to 1."""
+        ...
 
 
 def is_crowded(
@@ -107,7 +121,7 @@ def clearest(rows: NDArray[np.float32], classes: Sequence[str]) -> int:
 
 
 class ReadingStage:
-    """Sightings of a frame -> hands with tokens."""
+    """Hands of a frame -> the same with their tokens."""
 
     def __init__(self, classifier: Classifier, settings: ReadingSettings | None = None) -> None:
         self._classifier = classifier
@@ -116,44 +130,56 @@ class ReadingStage:
     def process(
         self,
         image: Image,
-        sightings: Sequence[Sighting],
+        hands: Sequence[HandInView],
+        face: tuple[float, float] | None = None,
         memory: ReadingMemory | None = None,
         time_s: float = 0.0,
     ) -> tuple[Hand, ...]:
-        """Read every sighting in one BGR frame, the diver's right hand first.
+        """Read every hand that is seen in one BGR frame, in the order of `hands`.
 
-        memory: of the stream, whose frame at `time_s` seconds this is; None for a picture on its own.
+        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame at
+        `time_s` seconds this is; None for a picture on its own.
         """
         memory = memory or NO_MEMORY
-        memory.keep_only([item.track for item in sightings])
-        if not sightings:
+        memory.keep_only([hand.number for hand in hands])
+        if not hands:
             return ()
-        boxes = [box for item in sightings for box in item.boxes]
-        sides = [item.side for item in sightings for _ in item.boxes]
+        boxes = [box for hand in hands for box in (hand.box, *hand.alternatives)]
+        sides = [hand.side or "right" for hand in hands for _ in range(1 + len(hand.alternatives))]
         rows = self._classifier.probabilities(image, boxes, sides)
-        hands = []
+        read = []
         first = 0
-        for item in sightings:
-            own = rows[first : first + len(item.boxes)]
-            first += len(item.boxes)
-            hands.append(self._read(image, item, own, memory, time_s))
-        return tuple(hands)
+        for hand in hands:
+            last = first + 1 + len(hand.alternatives)
+            others = [other.box for other in hands if other is not hand]
+            crowded = is_crowded(hand.box, others, face, self._settings)
+            read.append(self._read(image, hand, boxes[first:last], rows[first:last], crowded, memory, time_s))
+            first = last
+        return tuple(read)
 
     def _read(
-        self, image: Image, item: Sighting, rows: NDArray[np.float32], memory: ReadingMemory, time_s: float
+        self,
+        image: Image,
+        hand: HandInView,
+        boxes: Sequence[Box],
+        rows: NDArray[np.float32],
+        crowded: bool,
+        memory: ReadingMemory,
+        time_s: float,
     ) -> Hand:
         """The hand in the extent in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
-        steady = memory.steady(item.track, rows[place], time_s)
-        box = item.boxes[place]
+        steady = memory.steady(hand.number, rows[place], time_s)
+        box = boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(steady, classes, at_edge, item.is_crowded, self._settings)
+        token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)
         return Hand(
-            side=item.side,
+            side=hand.side or "right",
             token=token,
-            confidence=round(confidence * item.certainty, 4),
+            confidence=round(confidence * hand.certainty, 4),
             box=box,
-            track=item.track,
+            track=hand.number,
             reason=reason,
+            probabilities=dict(zip(classes, steady.tolist(), strict=True)),
         )

@@ -4,21 +4,31 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from statistics import median
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.errors import InputError
 from lightgesture.fsm import State
-from lightgesture.live.listener import Listener
-from lightgesture.live.mailbox import Mailbox, Snapshot
-from lightgesture.live.reader import Report
-from lightgesture.live.settings import LiveSettings
+from lightgesture.live.reader import Mailbox, Report, Snapshot
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, HeartbeatRecord, Record
 from lightgesture.results import DebugPictures
 from lightgesture.sources import to_image
+
+HEARTBEAT_S: Final = 1.0
+"""Seconds from one heartbeat record to the next."""
+
+POLL_S: Final = 0.1
+"""Longest wait for a picture, seconds, and so how late a request to stop is heeded."""
+
+BREATH_S: Final = 0.001
+"""Pause before each picture, seconds, in which the other threads get the core; without it records are some milliseconds
+older where the core is busy."""
+
+SILENCE_S: Final = 5.0
+"""Seconds without a picture after which one message says so."""
 
 
 class Outlet(Protocol):
@@ -30,11 +40,25 @@ class Outlet(Protocol):
     def put(self, record: Record) -> None: ...
 
 
+class Listener(Protocol):
+    """Is shown every processed picture; a page for a browser is one."""
+
+    def show(self, image_bgr: NDArray[np.uint8] | None, records: Sequence[Record]) -> None:
+        """Take note of a picture and its records, at once: the decoder waits for this call.
+
+        image_bgr: uint8 (height, width, 3), BGR; it may be kept, but not changed. None for records that belong to no
+        picture: heartbeats, and at the end what was pending and the summary. records: the frame record first, given
+        also where the user wants none in the results, then what the picture led to.
+        """
+        ...
+
+
 class LiveLoop:
     """Takes the newest picture from `mailbox` whenever the last one is done.
 
     source: the name in the heartbeats. pipeline: must give frame records, which listeners need. frames: whether they
     go to the outlets too. clock: seconds since the start, the same as that of the reader. report: takes messages.
+    heartbeat_s: seconds from one heartbeat record to the next.
     """
 
     def __init__(
@@ -49,11 +73,11 @@ class LiveLoop:
         listeners: Sequence[Listener] = (),
         frames: bool = False,
         debug: DebugPictures | None = None,
-        settings: LiveSettings | None = None,
+        heartbeat_s: float = HEARTBEAT_S,
     ) -> None:
         self._source, self._mailbox, self._pipeline, self._outlets = source, mailbox, pipeline, outlets
         self._clock, self._report, self._listeners = clock, report, listeners
-        self._frames, self._debug, self._settings = frames, debug, settings or LiveSettings()
+        self._frames, self._debug, self._heartbeat_s = frames, debug, heartbeat_s
         self._processed = self._unreadable = 0
         self._spent_ms: list[float] = []
         self._state = "idle"
@@ -62,12 +86,12 @@ class LiveLoop:
 
     def run(self, stopping: threading.Event) -> None:
         """Decode until `stopping` is set, the stream ends for good, or nobody takes the records any more."""
-        beat_s = self._clock() + self._settings.heartbeat_s
+        beat_s = self._clock() + self._heartbeat_s
         while not stopping.is_set() and not self._is_unheard():
             # The thread that reads and those that send come first, so that the next picture is the newest there is and
             # the last record is out: on one core they would else wait until this thread's turn is over.
-            time.sleep(self._settings.breath_s)
-            wait_s = min(self._settings.poll_s, max(0.0, beat_s - self._clock()))
+            time.sleep(BREATH_S)
+            wait_s = min(POLL_S, max(0.0, beat_s - self._clock()))
             snapshot = self._mailbox.take(wait_s)
             if snapshot is not None:
                 self._take_in(snapshot)
@@ -77,7 +101,7 @@ class LiveLoop:
             if now_s >= beat_s:
                 self._beat(now_s)
                 # After a stall one beat makes up for those that were missed.
-                beat_s = max(beat_s + self._settings.heartbeat_s, now_s)
+                beat_s = max(beat_s + self._heartbeat_s, now_s)
         self._publish(None, self._pipeline.finish())
 
     @property
@@ -119,7 +143,7 @@ class LiveLoop:
             state=self._state,
         )
         self._publish(None, [beat])
-        if now_s - self._seen_s > self._settings.silence_s and not self._is_silent:
+        if now_s - self._seen_s > SILENCE_S and not self._is_silent:
             self._is_silent = True
             self._report(f"{self._source}: no picture for {now_s - self._seen_s:.0f} s")
 

@@ -1,16 +1,80 @@
-"""The thread that reads a stream into the mailbox and opens it again when it breaks off."""
+"""The thread that reads a stream and opens it again when it breaks off, and the box with one slot where it leaves
+each picture for the thread that decodes."""
 
 import threading
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
 
 from lightgesture.backoff import Backoff
 from lightgesture.errors import InputError
-from lightgesture.live.mailbox import Mailbox, Snapshot
-from lightgesture.live.settings import LiveSettings
-from lightgesture.sources import LiveSource
+from lightgesture.sources import Content, LiveSource
 
 Report = Callable[[str], None]
 """Takes one message for the user, from any thread."""
+
+STOP_S: Final = 1.0
+"""Seconds that the end waits for the thread that reads; a camera driver that does not return is left to the system."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Snapshot:
+    """A picture as it came, perhaps still encoded; `index` counts all that came, also those passed over.
+
+    time_s: seconds of the loop's clock when it came.
+    """
+
+    content: Content
+    index: int
+    time_s: float
+
+
+class Mailbox:
+    """Holds the newest snapshot only: a newer one takes the place of one that nobody took, which counts as dropped."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._newest: Snapshot | None = None
+        self._failure: BaseException | None = None
+        self._is_closed = False
+        self._dropped = 0
+
+    @property
+    def dropped(self) -> int:
+        """How many snapshots were replaced before anybody took them."""
+        return self._dropped
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether nothing more comes and nothing is left."""
+        with self._changed:
+            return self._is_closed and self._newest is None
+
+    def put(self, snapshot: Snapshot) -> None:
+        """Leave a snapshot, at once."""
+        with self._changed:
+            self._dropped += self._newest is not None
+            self._newest = snapshot
+            self._changed.notify()
+
+    def take(self, timeout_s: float) -> Snapshot | None:
+        """The newest snapshot, None where none came in time or none comes any more.
+
+        Raises what the thread that reads failed with, if that was no fault of the stream.
+        """
+        with self._changed:
+            if self._newest is None and not self._is_closed:
+                self._changed.wait(timeout_s)
+            if self._failure is not None:
+                raise self._failure
+            snapshot, self._newest = self._newest, None
+            return snapshot
+
+    def close(self, failure: BaseException | None = None) -> None:
+        """Nothing more comes; `failure`: why, where that was no fault of the stream."""
+        with self._changed:
+            self._is_closed, self._failure = True, failure
+            self._changed.notify()
 
 
 class Reader:
@@ -18,7 +82,7 @@ class Reader:
 
     Each picture is stamped with `clock()` (seconds) as it comes. A stream that cannot be opened, breaks off or ends is
     reported once and opened again with growing waits; one that cannot be opened again, such as standard input, closes
-    the mailbox when it ends.
+    the mailbox when it ends. backoff: waits between tries to open the source again.
     """
 
     def __init__(
@@ -27,11 +91,10 @@ class Reader:
         mailbox: Mailbox,
         clock: Callable[[], float],
         report: Report,
-        settings: LiveSettings,
+        backoff: Backoff | None = None,
     ) -> None:
         self._source, self._mailbox, self._clock, self._report = source, mailbox, clock, report
-        self._backoff = Backoff(settings.reconnect)
-        self._stop_s = settings.stop_s
+        self._backoff = backoff or Backoff()
         self._stopping = threading.Event()
         self._index = 0
         self._is_broken = False
@@ -45,7 +108,7 @@ class Reader:
     def stop(self) -> None:
         """Ask the thread to end and wait for it for a while."""
         self._stopping.set()
-        self._thread.join(self._stop_s)
+        self._thread.join(STOP_S)
 
     def _run(self) -> None:
         try:

@@ -6,10 +6,9 @@ which is what browsers and phones play.
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Final
 
 import cv2
 import numpy as np
@@ -23,29 +22,27 @@ if TYPE_CHECKING:
     from av.container import OutputContainer
     from av.video.stream import VideoStream
 
+CODEC: Final = "libx264"
+"""An encoder of FFmpeg that PyAV brings."""
 
-@dataclass(frozen=True, slots=True)
-class VideoSettings:
-    """How the annotated video is coded.
+QUALITY: Final = 23
+"""Constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is sensible, 23 its own default."""
 
-    codec: an encoder of FFmpeg that PyAV brings. quality: constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is
-    sensible, 23 its own default. preset: of x264; slower ones make smaller files. ticks_per_s: of the file's clock;
-    90 000 is MPEG's and holds all usual rates exactly. nominal_rate: frames a second, a hint to the encoder only.
-    """
+PRESET: Final = "veryfast"
+"""Of x264; slower ones make smaller files."""
 
-    codec: str = "libx264"
-    quality: int = 23
-    preset: str = "veryfast"
-    ticks_per_s: int = 90_000
-    nominal_rate: int = 30
+TICKS_PER_S: Final = 90_000
+"""Of the file's clock: MPEG's, which holds all usual rates exactly."""
+
+NOMINAL_RATE: Final = 30
+"""Frames a second, a hint to the encoder only."""
 
 
 class AnnotatedVideo:
     """Takes frame after frame with its records."""
 
-    def __init__(self, container: "OutputContainer", settings: VideoSettings) -> None:
+    def __init__(self, container: "OutputContainer") -> None:
         self._container = container
-        self._settings = settings
         self._overlay = Overlay()
         self._stream: VideoStream | None = None
         self._size = (0, 0)
@@ -62,8 +59,8 @@ class AnnotatedVideo:
         if self._stream is None:
             self._stream = self._open(picture)
         frame = av.VideoFrame.from_ndarray(_fitted(picture, self._size), format="bgr24")
-        self._tick = max(self._tick + 1, round(time_s * self._settings.ticks_per_s))
-        frame.pts, frame.time_base = self._tick, Fraction(1, self._settings.ticks_per_s)
+        self._tick = max(self._tick + 1, round(time_s * TICKS_PER_S))
+        frame.pts, frame.time_base = self._tick, Fraction(1, TICKS_PER_S)
         self._container.mux(self._stream.encode(frame))
 
     def finish(self) -> None:
@@ -74,19 +71,17 @@ class AnnotatedVideo:
     def _open(self, picture: Image) -> "VideoStream":
         height, width = picture.shape[:2]
         self._size = width + width % 2, height + height % 2  # H.264 shares a colour between two by two pixels
-        settings = self._settings
-        options = {"crf": str(settings.quality), "preset": settings.preset}
-        added = self._container.add_stream(settings.codec, settings.nominal_rate, options=options)
-        stream = cast("VideoStream", added)
+        options = {"crf": str(QUALITY), "preset": PRESET}
+        stream = self._container.add_stream(CODEC, NOMINAL_RATE, options=options)
         stream.width, stream.height = self._size
         stream.pix_fmt = "yuv420p"
-        stream.codec_context.time_base = Fraction(1, settings.ticks_per_s)
+        stream.codec_context.time_base = Fraction(1, TICKS_PER_S)
         stream.codec_context.thread_count = 1  # one video a core; and the same bytes on any machine
         return stream
 
 
 @contextmanager
-def open_annotated_video(path: Path, settings: VideoSettings | None = None) -> Iterator[AnnotatedVideo]:
+def open_annotated_video(path: Path) -> Iterator[AnnotatedVideo]:
     """Write an `.mp4` file that appears under its name when the block ends well. Needs the extra `av`."""
     import av
 
@@ -94,7 +89,7 @@ def open_annotated_video(path: Path, settings: VideoSettings | None = None) -> I
         # Through a file of our own: FFmpeg would read signs in a name as a protocol.
         container = av.open(stream, "w", format="mp4")
         try:
-            video = AnnotatedVideo(container, settings or VideoSettings())
+            video = AnnotatedVideo(container)
             yield video
             video.finish()
         finally:

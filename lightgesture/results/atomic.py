@@ -1,6 +1,8 @@
-"""Files that are there whole or not at all."""
+"""Files and folders that are there whole or not at all."""
 
+import errno
 import os
+import shutil
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -10,20 +12,63 @@ from lightgesture.errors import UsageError
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, suffix: str = "") -> Iterator[Path]:
     """Give a temporary name beside `path` to write to, and rename it to `path` when the block ends well.
 
-    After an exception, an interruption included, the temporary file is gone and `path` is as it was.
-    Missing folders are made. UsageError: the place cannot be written.
+    suffix: ending of the temporary name, for a writer that chooses its format by it. After an exception, an
+    interruption included, the temporary file is gone and `path` is as it was. The content is on the disk before it has
+    its name, so that not even a loss of power leaves half of it. Missing folders are made. UsageError: the place
+    cannot be written.
     """
+    temporary = _temporary(path, suffix)
+    with _told(path):
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            yield temporary
+            _sync(temporary)
+            os.replace(temporary, path)
+        finally:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def replacing_folder(path: Path) -> Iterator[Path]:
+    """Likewise a new, empty folder, which takes the place of `path` and all that is in it.
+
+    Where another process has put one there meanwhile, that one stays.
+    """
+    temporary = _temporary(path)
+    with _told(path):
+        try:
+            temporary.mkdir(parents=True)
+            yield temporary
+            for file in temporary.rglob("*"):
+                if file.is_file():
+                    _sync(file)
+            shutil.rmtree(path, ignore_errors=True)
+            try:
+                os.replace(temporary, path)
+            except OSError as error:
+                if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
+                    raise
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _temporary(path: Path, suffix: str = "") -> Path:
     # A name of its own, for one made from that of `path` could be too long for the file system.
-    temporary = path.with_name(f".{uuid.uuid4().hex}.part")
+    return path.with_name(f".{uuid.uuid4().hex}.part{suffix}")
+
+
+def _sync(file: Path) -> None:
+    with open(file, "r+b") as stream:
+        os.fsync(stream.fileno())
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield temporary
-        os.replace(temporary, path)
+        yield
     except OSError as error:
         raise UsageError(f"{path}: cannot be written ({error.strerror}); name another folder") from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)

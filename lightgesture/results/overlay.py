@@ -6,6 +6,7 @@ The state of the picture is a frozen value, `advance` leads it over the records 
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import Final
 
 import cv2
 import numpy as np
@@ -25,23 +26,20 @@ _WHITE, _GREY, _DARK = (255, 255, 255), (190, 190, 190), (28, 24, 20)
 _FONT = cv2.FONT_HERSHEY_SIMPLEX
 _MORE = "..."
 
+LETTER_SHARE: Final = 0.032
+"""Height of a capital letter as a share of the picture's shorter side; larger hides more."""
 
-@dataclass(frozen=True, slots=True)
-class OverlaySettings:
-    """How the overlay looks.
+LEAST_LETTER: Final = 9
+"""Smallest height of a capital letter, pixels; below 8 it cannot be read."""
 
-    letter_share: height of a capital letter as a share of the picture's shorter side, 0.02 to 0.06; larger hides more.
-    least_letter: smallest height of a capital letter, pixels; below 8 it cannot be read.
-    message_s: how long an accepted or rejected instruction stays in view, seconds of the video. 3 to 6 suits readers.
-    notice_s: likewise for a notice, which never covers an instruction.
-    panel_opacity: how much of the picture the panels hide, 0 (nothing) to 1.
-    """
+MESSAGE_S: Final = 4.0
+"""How long an accepted or rejected instruction stays in view, seconds of the video. 3 to 6 suits readers."""
 
-    letter_share: float = 0.032
-    least_letter: int = 9
-    message_s: float = 4.0
-    notice_s: float = 2.0
-    panel_opacity: float = 0.7
+NOTICE_S: Final = 2.0
+"""Likewise for a notice, which never covers an instruction."""
+
+PANEL_OPACITY: Final = 0.7
+"""How much of the picture the panels hide, 0 (nothing) to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,8 +74,7 @@ class Overlay:
     For boxes and tokens the records of a frame must hold its frame record (`Pipeline(frames=True)`).
     """
 
-    def __init__(self, settings: OverlaySettings | None = None) -> None:
-        self._settings = settings or OverlaySettings()
+    def __init__(self) -> None:
         self.state = OverlayState()
 
     def draw(self, image_bgr: Image, records: Iterable[Record]) -> Image:
@@ -85,15 +82,12 @@ class Overlay:
 
         image_bgr: uint8 (height, width, 3), BGR, or what `as_bgr8` makes of it. Gives uint8 (height, width, 3).
         """
-        self.state = advance(self.state, records, self._settings)
-        return render(image_bgr, self.state, self._settings)
+        self.state = advance(self.state, records)
+        return render(image_bgr, self.state)
 
 
-def advance(
-    state: OverlayState, records: Iterable[Record], settings: OverlaySettings | None = None
-) -> OverlayState:
+def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
     """The state after the records of one frame."""
-    settings = settings or OverlaySettings()
     for record in records:
         time_s = getattr(record, "time_s", None)
         if time_s is not None:
@@ -105,26 +99,25 @@ def advance(
                 state = replace(state, sentence=record.sentence, dwell=record.dwell)
             case Instruction():
                 accepted = f"{record.text}  {record.confidence:.0%}"
-                state = _say(state, "accepted: " + accepted, "", _GREEN, settings.message_s)
+                state = _say(state, "accepted: " + accepted, "", _GREEN)
             case Rejected():
-                state = _say(state, "rejected: " + record.text, record.detail, _RED, settings.message_s)
+                state = _say(state, "rejected: " + record.text, record.detail, _RED)
             case Notice():
-                state = _notice(state, record.detail, settings.notice_s)
+                state = _notice(state, record.detail)
             case _:
                 pass
     message = state.message
     # A clock that was set back must not leave a message in view for ever.
-    if message is not None and not message.until_s - settings.message_s <= state.time_s < message.until_s:
+    if message is not None and not message.until_s - MESSAGE_S <= state.time_s < message.until_s:
         return replace(state, message=None)
     return state
 
 
-def render(image_bgr: Image, state: OverlayState, settings: OverlaySettings | None = None) -> Image:
+def render(image_bgr: Image, state: OverlayState) -> Image:
     """A copy of the frame with the state drawn on it."""
-    settings = settings or OverlaySettings()
     picture = np.array(as_bgr8(image_bgr), copy=True)
-    letter = max(settings.least_letter, round(min(picture.shape[:2]) * settings.letter_share))
-    pen = _Pen(picture, letter, settings.panel_opacity)
+    letter = max(LEAST_LETTER, round(min(picture.shape[:2]) * LETTER_SHARE))
+    pen = _Pen(picture, letter)
     for hand in state.hands:
         _draw_hand(pen, hand)
     _draw_sentence(pen, state)
@@ -133,16 +126,16 @@ def render(image_bgr: Image, state: OverlayState, settings: OverlaySettings | No
     return picture
 
 
-def _say(state: OverlayState, text: str, detail: str, colour: _Colour, seconds: float) -> OverlayState:
-    message = Message(one_line(text), one_line(detail), colour, state.time_s + seconds, is_notice=False)
+def _say(state: OverlayState, text: str, detail: str, colour: _Colour) -> OverlayState:
+    message = Message(one_line(text), one_line(detail), colour, state.time_s + MESSAGE_S, is_notice=False)
     return replace(state, message=message)
 
 
-def _notice(state: OverlayState, detail: str, seconds: float) -> OverlayState:
+def _notice(state: OverlayState, detail: str) -> OverlayState:
     shown = state.message
     if shown is not None and not shown.is_notice and state.time_s < shown.until_s:
         return state
-    message = Message(one_line(detail), "", _AMBER, state.time_s + seconds, is_notice=True)
+    message = Message(one_line(detail), "", _AMBER, state.time_s + NOTICE_S, is_notice=True)
     return replace(state, message=message)
 
 
@@ -152,13 +145,12 @@ class _Pen:
     letter: height of a capital, pixels. A row is as high as a line of text with its margins.
     """
 
-    def __init__(self, picture: Image, letter: int, opacity: float) -> None:
+    def __init__(self, picture: Image, letter: int) -> None:
         self.picture = picture
         self.height, self.width = picture.shape[:2]
         self.letter = letter
         self.margin = max(2, letter // 2)
         self.row = letter + 2 * self.margin
-        self._opacity = opacity
         self._stroke = max(1, round(letter / 9))
         unit = cv2.getTextSize("X", _FONT, 1.0, 1)[0][1]
         self._scale = letter / unit
@@ -187,7 +179,7 @@ class _Pen:
         part = self.picture[max(y, 0) : max(y + height, 0), max(x, 0) : max(x + width, 0)]
         if part.size:
             plain = np.full_like(part, colour)
-            part[...] = cv2.addWeighted(part, 1.0 - self._opacity, plain, self._opacity, 0.0)
+            part[...] = cv2.addWeighted(part, 1.0 - PANEL_OPACITY, plain, PANEL_OPACITY, 0.0)
 
 
 def _draw_hand(pen: _Pen, hand: Hand) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from lightgesture.console import one_line
 from lightgesture.fsm import Instruction, Rejected, Word
@@ -20,23 +20,23 @@ NOT_READ = "not read"
 TOKENS = (NOT_READ, *(token for token in CLASSES if token != NONE))
 """The first rows of the picture, from the bottom: a hand without a token stands in the lowest, own signs above."""
 
+HEIGHT_IN: Final = 7.0
+"""Height of the picture, inches."""
 
-@dataclass(frozen=True, slots=True)
-class TimelineSettings:
-    """How the picture looks.
+LEAST_WIDTH_IN: Final = 10.0
+"""Least width of the picture, inches."""
 
-    height_in: inches. width_in, width_limit_in: least and largest width, inches. inches_per_s: width of a second
-    between them, enough for two words. dots_per_inch: of the PNG. least_span_s: what the axis shows of a single frame,
-    seconds.
-    """
+WIDTH_LIMIT_IN: Final = 40.0
+"""Largest width of the picture, inches."""
 
-    height_in: float = 7.0
-    width_in: float = 10.0
-    width_limit_in: float = 40.0
-    inches_per_s: float = 0.6
-    dots_per_inch: int = 100
-    least_span_s: float = 0.1
+INCHES_PER_S: Final = 0.6
+"""Width of a second between these two, enough for two words."""
 
+DOTS_PER_INCH: Final = 100
+"""Of the PNG."""
+
+LEAST_SPAN_S: Final = 0.1
+"""What the axis shows of a single frame, seconds."""
 
 _HANDS = {"left": ("#1f77b4", 0.15), "right": ("#d95f02", -0.15)}
 """Side to the colour of its dots and how far they stand above the row of their token."""
@@ -92,16 +92,13 @@ def open_plot(path: Path, name: str) -> Iterator[Timeline]:
         draw_timeline(timeline, name, temporary)
 
 
-def draw_timeline(
-    timeline: Timeline, name: str, path: Path, settings: TimelineSettings | None = None
-) -> None:
+def draw_timeline(timeline: Timeline, name: str, path: Path) -> None:
     """Draw the picture to `path`, PNG whatever its name. OSError: it cannot be written."""
     from matplotlib.figure import Figure
 
-    settings = settings or TimelineSettings()
-    span_s = max(timeline.end_s, settings.least_span_s)
-    width = min(max(settings.width_in, span_s * settings.inches_per_s), settings.width_limit_in)
-    figure = Figure(figsize=(width, settings.height_in), layout="constrained")
+    span_s = max(timeline.end_s, LEAST_SPAN_S)
+    width = min(max(LEAST_WIDTH_IN, span_s * INCHES_PER_S), WIDTH_LIMIT_IN)
+    figure = Figure(figsize=(width, HEIGHT_IN), layout="constrained")
     signs, said, issued = figure.subplots(3, 1, sharex=True, height_ratios=(5, 1.6, 1.8))
     signs.set_title(one_line(name), parse_math=False, loc="left")
     _draw_signs(signs, timeline)
@@ -111,7 +108,7 @@ def draw_timeline(
     issued.set_xlabel("time, seconds")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # signs of a name that the font lacks are drawn as boxes
-        figure.savefig(path, format="png", dpi=settings.dots_per_inch)
+        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
 
 
 def _draw_signs(axes: "Axes", timeline: Timeline) -> None:

@@ -5,7 +5,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import Protocol, TextIO
+from typing import Protocol
 
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
@@ -32,21 +32,10 @@ def to_json_line(record: Record, encoding: str = "utf-8") -> str:
     return text
 
 
-class JsonLinesWriter:
-    """One JSON object a line, UTF-8."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-
-    def write(self, record: Record) -> None:
-        """Append a record."""
-        self._stream.write(to_json_line(record) + "\n")
-
-
 class JsonPrinter:
-    """Prints one JSON object a line through `print_line`; encoding: that of the stream."""
+    """Gives one JSON object a line to `print_line`; encoding: that of the stream."""
 
-    def __init__(self, print_line: Callable[[str], None], encoding: str) -> None:
+    def __init__(self, print_line: Callable[[str], object], encoding: str = "utf-8") -> None:
         self._print_line = print_line
         self._encoding = encoding
 
@@ -59,7 +48,7 @@ class JsonPrinter:
 def open_json_lines(path: Path) -> Iterator[Writer]:
     """Write a `.jsonl` file that appears under its name when the block ends well."""
     with replacing(path) as temporary, open(temporary, "w", encoding="utf-8", newline="\n") as stream:
-        yield JsonLinesWriter(stream)
+        yield JsonPrinter(lambda line: stream.write(line + "\n"))
 
 
 WRITERS: dict[str, Callable[[Path, str], AbstractContextManager[Writer]]] = {

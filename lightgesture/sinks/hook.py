@@ -7,23 +7,19 @@ import signal
 import subprocess
 import sys
 from contextlib import suppress
-from dataclasses import dataclass
+from typing import Final
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction
 from lightgesture.records import Record
 from lightgesture.results import to_json_line
-from lightgesture.sinks.types import RecordError
+from lightgesture.sinks.outbox import RecordError, Sink
+
+TIMEOUT_S: Final = 5.0
+"""Seconds after which a command that is still running is killed; the next one waits for it."""
 
 
-@dataclass(frozen=True, slots=True)
-class HookSettings:
-    """timeout_s: seconds after which a command that is still running is killed, above 0; the next one waits for it."""
-
-    timeout_s: float = 5.0
-
-
-class HookSink:
+class HookSink(Sink):
     """Runs a command, without a shell, with the record as one line of JSON on its standard input.
 
     Its standard output goes nowhere, for ours belongs to the records; its standard error is ours. A command that
@@ -31,22 +27,16 @@ class HookSink:
     UsageError when made: there is no such command.
     """
 
-    def __init__(self, command: str, settings: HookSettings | None = None) -> None:
+    def __init__(self, command: str) -> None:
         self.name = f"hook {command}"
-        self.keeps_old = False
         self._words = _split(command)
-        self._settings = settings or HookSettings()
 
     def wants(self, record: Record) -> bool:
         """Accepted instructions only."""
         return isinstance(record, Instruction)
 
-    def open(self) -> None:
-        """Nothing stays open between commands."""
-
     def send(self, record: Record) -> None:
         """Run the command. RecordError: it could not be started, failed, or took too long."""
-        timeout_s = self._settings.timeout_s
         line = (to_json_line(record) + "\n").encode("utf-8", "surrogateescape")
         try:
             # A group of its own, so that what the command has started can be ended with it.
@@ -57,16 +47,13 @@ class HookSink:
                 stderr=_standard_error(),
                 start_new_session=True,
             ) as process:
-                _talk(process, line, timeout_s)
+                _talk(process, line)
         except subprocess.TimeoutExpired:
-            raise RecordError(f"{self.name}: killed after {timeout_s:g} s") from None
+            raise RecordError(f"{self.name}: killed after {TIMEOUT_S:g} s") from None
         except OSError as error:
             raise RecordError(f"{self.name}: cannot be run ({error.strerror})") from None
         if process.returncode:
             raise RecordError(f"{self.name}: failed with status {process.returncode}")
-
-    def close(self) -> None:
-        """Nothing stays open between commands."""
 
 
 def _standard_error() -> int | None:
@@ -77,9 +64,9 @@ def _standard_error() -> int | None:
         return None
 
 
-def _talk(process: "subprocess.Popen[bytes]", line: bytes, timeout_s: float) -> None:
+def _talk(process: "subprocess.Popen[bytes]", line: bytes) -> None:
     try:
-        process.communicate(line, timeout_s)
+        process.communicate(line, TIMEOUT_S)
     except subprocess.TimeoutExpired:
         with suppress(OSError):
             os.killpg(process.pid, signal.SIGKILL)

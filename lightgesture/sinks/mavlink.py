@@ -2,14 +2,13 @@
 
 import os
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction
 from lightgesture.records import HeartbeatRecord, Record
 from lightgesture.sinks.mavlink_map import MavlinkMap
-from lightgesture.sinks.types import SinkError
+from lightgesture.sinks.outbox import Sink, SinkError
 
 TEXT_BYTES = 50
 """Bytes of text in one STATUSTEXT."""
@@ -18,22 +17,20 @@ _SCHEMES = ("udpout", "udpin", "udpbcast", "tcp", "tcpin")
 _MILLISECONDS, _UINT32, _INT32 = 1000.0, 0xFFFFFFFF, 0x7FFFFFFF
 
 
-@dataclass(frozen=True, slots=True)
-class MavlinkSettings:
-    """Who we are on the network. source_system: number of the vehicle, 1 to 255, as it is set in the autopilot.
+SOURCE_SYSTEM: Final = 1
+"""Number of the vehicle, 1 to 255, as it is set in the autopilot."""
 
-    source_component: our own number in it; 191 is the first on-board computer. prefix: begins each text, so that who
-    hears it knows where it is from. received_reads: how often at most what others send is read away before a message
-    is sent: enough for a second of a busy link.
-    """
+SOURCE_COMPONENT: Final = 191
+"""Our own number in it: the first on-board computer."""
 
-    source_system: int = 1
-    source_component: int = 191
-    prefix: str = "Diver: "
-    received_reads: int = 500
+PREFIX: Final = "Diver: "
+"""Begins each text, so that who hears it knows where it is from."""
+
+RECEIVED_READS: Final = 500
+"""How often at most what others send is read away before a message is sent: enough for a second of a busy link."""
 
 
-class MavlinkSink:
+class MavlinkSink(Sink):
     """HEARTBEAT with each heartbeat record, STATUSTEXT for each accepted instruction, and what the map says.
 
     device: `udpout:HOST:PORT`, `udpin:`, `udpbcast:`, `tcp:`, `tcpin:`, or a serial device and its rate,
@@ -41,13 +38,10 @@ class MavlinkSink:
     UsageError when made: another device, or pymavlink is not installed.
     """
 
-    def __init__(
-        self, device: str, mapping: MavlinkMap | None = None, settings: MavlinkSettings | None = None
-    ) -> None:
+    def __init__(self, device: str, mapping: MavlinkMap | None = None) -> None:
         self.name = f"mavlink {device}"
-        self.keeps_old = False
         self._device = _check_device(device)
-        self._mapping, self._settings = mapping or MavlinkMap(), settings or MavlinkSettings()
+        self._mapping = mapping or MavlinkMap()
         self._mavutil, self._dialect = _import_pymavlink()
         self._connection: Any = None
         self._packer: Any = None
@@ -59,21 +53,18 @@ class MavlinkSink:
 
     def open(self) -> None:
         """Open the link. SinkError: it cannot be."""
-        settings = self._settings
         try:
             self._connection = self._mavutil.mavlink_connection(
                 self._device,
-                source_system=settings.source_system,
-                source_component=settings.source_component,
+                source_system=SOURCE_SYSTEM,
+                source_component=SOURCE_COMPONENT,
                 retries=1,
             )
         except Exception as error:  # pyserial and sockets have their own, and pymavlink adds plain ones
             raise SinkError(f"{self.name}: cannot be opened ({_reason(error)})") from None
         # By itself the link would only print that it is dead, and go on.
         self._connection.handle_eof = self._connection.handle_disconnect = _fail_closed
-        self._packer = self._dialect.MAVLink(
-            self._connection, settings.source_system, settings.source_component
-        )
+        self._packer = self._dialect.MAVLink(self._connection, SOURCE_SYSTEM, SOURCE_COMPONENT)
 
     def send(self, record: Record) -> None:
         """Send the messages of one record. SinkError: the link is dead."""
@@ -97,7 +88,7 @@ class MavlinkSink:
 
     def _read_away(self) -> None:
         """Receive and forget: a server learns so who listens, and a closed link shows itself."""
-        for _ in range(self._settings.received_reads):
+        for _ in range(RECEIVED_READS):
             if not self._connection.recv(4096):
                 break
 
@@ -112,7 +103,7 @@ class MavlinkSink:
         )
 
     def _send_instruction(self, record: Instruction) -> None:
-        self._send_text(self._settings.prefix + record.text)
+        self._send_text(PREFIX + record.text)
         time_ms = int(record.time_s * _MILLISECONDS) & _UINT32
         for rule, number in self._mapping.values(record):
             name = rule.name.encode("ascii")

@@ -15,15 +15,15 @@ command = "MAV_CMD_IMAGE_START_CAPTURE"
 params = [0, 0, 1]
 """
 
-import tomllib
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic_core import ErrorDetails
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction
+from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
 
 COMMANDS = {
     "MAV_CMD_NAV_LOITER_UNLIM": 17,
@@ -143,14 +143,17 @@ class MavlinkMap(BaseModel):
 def load_map(path: str) -> MavlinkMap:
     """Read and check a map. UsageError: it cannot be read, is no TOML, or has a wrong key or value."""
     try:
-        content = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise UsageError(f"{path}: cannot be read ({error.strerror}); name a TOML file") from None
-    except (ValueError, RecursionError) as error:  # bytes that are no UTF-8 and TOML syntax are ValueErrors
-        raise UsageError(f"{path}: is no valid TOML ({error or 'too deeply nested'})") from None
-    try:
-        return MavlinkMap.model_validate(content)
+        return MavlinkMap.model_validate(read_toml(path, "map", "docs/live.md"))
+    except TomlError as error:
+        raise UsageError(f"{path}: {error}") from None
     except ValidationError as error:
-        detail = error.errors(include_url=False)[0]
-        place = ".".join(map(str, detail["loc"]))
-        raise UsageError(f"{path}: {place}: {detail['msg']}; see docs/live.md") from None
+        raise UsageError(f"{path}: {_explain(error.errors(include_url=False)[0])}") from None
+
+
+def _explain(detail: ErrorDetails) -> str:
+    place, key = ".".join(map(str, detail["loc"])), detail["loc"][-1]
+    if detail["type"] != "extra_forbidden":
+        return f"{place}: {detail['msg']}; see docs/live.md"
+    rules: dict[str | int, type[BaseModel]] = {"value": ValueRule, "command": CommandRule}
+    table = rules.get(detail["loc"][0], MavlinkMap) if len(detail["loc"]) > 1 else MavlinkMap
+    return f"{place}: unknown key; {suggest_key(str(key), list(table.model_fields))}"

@@ -1,30 +1,64 @@
-"""A bounded queue and a thread before each sink."""
+"""What every sink offers, how it tells that something went wrong, and the bounded queue and thread before each."""
 
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from typing import Final
 
-from lightgesture.backoff import Backoff, BackoffSettings
+from lightgesture.backoff import Backoff
 from lightgesture.records import Record
-from lightgesture.sinks.types import RecordError, Sink, SinkError, SinkGoneError
+
+CAPACITY: Final = 256
+"""Records in the queue; where one more comes, the oldest is dropped."""
+
+MAX_AGE_S: Final = 5.0
+"""Seconds after which a waiting record is dropped, except for sinks that keep old ones: longer gets more through a link
+that breaks, and lets an instruction arrive later than it was signed."""
+
+DRAIN_S: Final = 2.0
+"""Seconds that the end waits for what is still queued."""
+
+LONGEST_RETRY_S: Final = 30.0
+"""Longest wait between tries to open the sink again, seconds."""
 
 
-@dataclass(frozen=True, slots=True)
-class OutboxSettings:
-    """How long records wait for their sink.
+class SinkError(Exception):
+    """The way out is blocked: open the sink again and repeat the record. The text: what, why, in one line."""
 
-    capacity: records in the queue, at least 1; where one more comes, the oldest is dropped. max_age_s: seconds after
-    which a waiting record is dropped, above 0, except for sinks that keep old ones: longer gets more through a link
-    that breaks, and lets an instruction arrive later than it was signed. drain_s: seconds that the end waits for what
-    is still queued. retry: waits between tries to open the sink again.
-    """
 
-    capacity: int = 256
-    max_age_s: float = 5.0
-    drain_s: float = 2.0
-    retry: BackoffSettings = field(default_factory=lambda: BackoffSettings(longest_s=30.0))
+class RecordError(Exception):
+    """This record cannot be sent and must not be repeated; the next one may do. The text: what, why, in one line."""
+
+
+class SinkGoneError(Exception):
+    """Nobody takes the records of this sink any more."""
+
+
+class Sink(ABC):
+    """Takes records, in order; all calls come from one thread and may take their time."""
+
+    name: str
+    """For messages."""
+
+    keeps_old = False
+    """Whether a record that waited for long is still of use, as in a log. To a vehicle it is not: an instruction that
+    arrives late may meet another situation."""
+
+    def wants(self, record: Record) -> bool:  # noqa: ARG002 - all of them
+        """Whether to send the record at all; called from any thread, quick."""
+        return True
+
+    def open(self) -> None:  # noqa: B027 - some need nothing
+        """Make ready to send, also again after an error. SinkError: it cannot be."""
+
+    @abstractmethod
+    def send(self, record: Record) -> None:
+        """Send one record. SinkError, RecordError, SinkGoneError: as they say."""
+
+    def close(self) -> None:  # noqa: B027 - likewise
+        """Give back what `open` took; also after a failed `open`, and twice."""
 
 
 class Outbox:
@@ -33,15 +67,13 @@ class Outbox:
     A sink that fails is reported once, until it has worked again, and opened again with growing waits.
     """
 
-    def __init__(
-        self, sink: Sink, report: Callable[[str], None], settings: OutboxSettings | None = None
-    ) -> None:
-        self._sink, self._report, self._settings = sink, report, settings or OutboxSettings()
+    def __init__(self, sink: Sink, report: Callable[[str], None], backoff: Backoff | None = None) -> None:
+        self._sink, self._report = sink, report
         self._changed = threading.Condition()
         self._queue: deque[tuple[float, Record]] = deque()
         self._is_stopping = self._is_gone = self._is_failing = False
         self._dropped = 0
-        self._backoff = Backoff(self._settings.retry)
+        self._backoff = backoff or Backoff(longest_s=LONGEST_RETRY_S)
         # A daemon, for a pipe that nobody empties must not keep the program from ending.
         self._thread = threading.Thread(target=self._run, name=sink.name, daemon=True)
 
@@ -49,11 +81,6 @@ class Outbox:
     def is_gone(self) -> bool:
         """Whether nobody takes the records any more."""
         return self._is_gone
-
-    @property
-    def dropped(self) -> int:
-        """Records that were never sent, because the queue was full or they became too old."""
-        return self._dropped
 
     def start(self) -> None:
         """Open the sink and begin to send."""
@@ -66,7 +93,7 @@ class Outbox:
         with self._changed:
             if self._is_gone:
                 return
-            if len(self._queue) == self._settings.capacity:
+            if len(self._queue) == CAPACITY:
                 self._queue.popleft()
                 self._dropped += 1
             self._queue.append((time.monotonic(), record))
@@ -77,7 +104,7 @@ class Outbox:
         with self._changed:
             self._is_stopping = True
             self._changed.notify()
-        self._thread.join(self._settings.drain_s)
+        self._thread.join(DRAIN_S)
         with self._changed:
             self._dropped += len(self._queue)
             self._queue.clear()
@@ -138,7 +165,7 @@ class Outbox:
                 self._report(f"{self._sink.name}: works again")
 
     def _is_too_old(self, queued_s: float) -> bool:
-        return not self._sink.keeps_old and time.monotonic() - queued_s > self._settings.max_age_s
+        return not self._sink.keeps_old and time.monotonic() - queued_s > MAX_AGE_S
 
     def _wait(self) -> None:
         deadline_s = time.monotonic() + self._backoff.next_wait()

@@ -7,23 +7,16 @@ from lightgesture.console import ReaderGoneError, print_line
 from lightgesture.errors import UsageError
 from lightgesture.records import Record
 from lightgesture.results import Writer
-from lightgesture.sinks.types import SinkError, SinkGoneError
+from lightgesture.sinks.outbox import Sink, SinkError, SinkGoneError
 
 
-class PrinterSink:
+class PrinterSink(Sink):
     """Gives the records to a printer; a reader that has gone is told by SinkGoneError."""
 
     def __init__(self, printer: Writer) -> None:
         self.name = "standard output"
         self.keeps_old = True
         self._printer = printer
-
-    def wants(self, record: Record) -> bool:  # noqa: ARG002 - all of them
-        """Everything."""
-        return True
-
-    def open(self) -> None:
-        """Standard output is open."""
 
     def send(self, record: Record) -> None:
         """Print one record."""
@@ -33,9 +26,6 @@ class PrinterSink:
             raise SinkGoneError from None
         except UsageError as error:  # a full disk, which may be emptied
             raise SinkError(str(error)) from None
-
-    def close(self) -> None:
-        """Standard output is not ours to close."""
 
 
 def print_unbuffered(text: str) -> None:

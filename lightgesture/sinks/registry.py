@@ -4,7 +4,7 @@ from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.sinks.hook import HookSink
 from lightgesture.sinks.mavlink_map import MavlinkMap, load_map
-from lightgesture.sinks.types import Sink
+from lightgesture.sinks.outbox import Sink
 from lightgesture.sinks.udp import UdpSink
 
 _MAX_PORT = 0xFFFF

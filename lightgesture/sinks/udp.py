@@ -7,10 +7,10 @@ from typing import Any
 
 from lightgesture.records import Record
 from lightgesture.results import to_json_line
-from lightgesture.sinks.types import RecordError, SinkError
+from lightgesture.sinks.outbox import RecordError, Sink, SinkError
 
 
-class UdpSink:
+class UdpSink(Sink):
     """One datagram a record: a JSON object in UTF-8, as standard output has it.
 
     Whether anybody listens is not known.
@@ -18,14 +18,9 @@ class UdpSink:
 
     def __init__(self, host: str, port: int) -> None:
         self.name = f"udp {host}:{port}"
-        self.keeps_old = False
         self._host, self._port = host, port
         self._socket: socket.socket | None = None
         self._address: Any = None
-
-    def wants(self, record: Record) -> bool:  # noqa: ARG002 - all of them
-        """Everything."""
-        return True
 
     def open(self) -> None:
         """Look the host up. SinkError: it has no address."""

@@ -1,11 +1,18 @@
 """Pictures in: files, folders, bags and streams become frames, BGR with 8 bits, each with its time."""
 
-from lightgesture.sources.names import expand_inputs, natural_key
+from lightgesture.config import DEFAULT_FPS
+from lightgesture.sources.folder import natural_key
 from lightgesture.sources.pictures import is_picture_name, read_picture, to_image
-from lightgesture.sources.registry import LIVE_SOURCES, SOURCES, live_source, open_any, open_source
-from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
+from lightgesture.sources.registry import (
+    LIVE_SOURCES,
+    SOURCES,
+    expand_inputs,
+    live_source,
+    open_any,
+    open_source,
+)
 from lightgesture.sources.stream_frames import StreamFrames
-from lightgesture.sources.types import Content, LiveSource, Source
+from lightgesture.sources.types import Content, LiveSource, Source, SourceOptions
 
 __all__ = [
     "DEFAULT_FPS",

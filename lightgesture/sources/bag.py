@@ -4,12 +4,13 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
-from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
+from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.ros_images import IMAGE_TYPES, message_to_bgr8
+from lightgesture.sources.types import Source
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
@@ -36,7 +37,7 @@ def _is_metadata(path: str) -> bool:
         return False
 
 
-class BagFile:
+class BagFile(Source):
     """The images of one topic of a bag, in the order in which they were recorded.
 
     topic: its name; None takes the only image topic there is. The time of a frame is that of its message's header,
@@ -53,23 +54,20 @@ class BagFile:
         except InputError:
             self._reader.close()
             raise
-        self.frame_count: int | None = sum(one.msgcount for one in self._connections)
+        self.frame_count = sum(one.msgcount for one in self._connections)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Close the bag."""
         self._reader.close()
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[str] = []
+        depth = depth_of(self.name)
         start_ns: int | None = None
         for index, (connection, recorded_ns, data) in enumerate(self._messages()):
             try:
                 message = self._deserialize(connection, data)
-                image = message_to_bgr8(message)
+                image = message_to_bgr8(message, depth)
             except ValueError as error:
                 left_out.append(f"message {index} {error}")
                 continue

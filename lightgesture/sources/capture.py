@@ -3,7 +3,7 @@
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType, TracebackType
+from types import MappingProxyType
 from typing import Self
 from urllib.parse import urlsplit, urlunsplit
 
@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
-from lightgesture.sources.pictures import to_bgr8
-from lightgesture.sources.settings import STREAM, SourceOptions, StreamSettings
+from lightgesture.sources import types
+from lightgesture.sources.pictures import depth_of
+from lightgesture.sources.types import LiveSource, SourceOptions
 
 NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
 """Beginnings of the addresses that FFmpeg opens."""
@@ -21,7 +22,7 @@ NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
 _VIDEO_DEVICE = re.compile(r"/dev/video(\d+)")
 
 
-class CaptureStream:
+class CaptureStream(LiveSource):
     """The pictures that one of OpenCV's back-ends reads from `target`, an index or a name.
 
     parameters: properties and values that opening must obey. wishes: likewise, which a driver need not know.
@@ -36,10 +37,10 @@ class CaptureStream:
         wishes: Mapping[int, float] = MappingProxyType({}),
     ) -> None:
         self.name = name
-        self.is_reopened = True
         self._target, self._backend = target, backend
         self._parameters, self._wishes = list(parameters), wishes
         self._capture: cv2.VideoCapture | None = None
+        self._depth = depth_of(name)
 
     def __enter__(self) -> Self:
         try:
@@ -53,9 +54,8 @@ class CaptureStream:
             self._capture.set(wish, value)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Let go of the device or the connection."""
         if self._capture is not None:
             self._capture.release()
             self._capture = None
@@ -69,7 +69,7 @@ class CaptureStream:
         assert self._capture is not None
         try:
             is_read, image = self._capture.read()
-            return to_bgr8(image) if is_read else None
+            return self._depth.bgr8(image) if is_read else None
         except (cv2.error, ValueError) as error:
             raise InputError(f"{self.name}: sends what is no picture ({error})") from None
 
@@ -86,22 +86,22 @@ def open_camera(name: str, options: SourceOptions) -> CaptureStream:
     return CaptureStream(name, target, cv2.CAP_ANY, wishes=wishes)
 
 
-def open_network(address: str, settings: StreamSettings = STREAM) -> CaptureStream:
+def open_network(address: str) -> CaptureStream:
     """A stream that FFmpeg reads, such as RTSP or H.264 over UDP, not yet opened."""
     name = hide_login(address)
     if not urlsplit(address).netloc:
         raise UsageError(f"{name}: names no host; write {address.partition(':')[0]}://HOST:PORT/PATH")
-    return CaptureStream(name, address, cv2.CAP_FFMPEG, _timeouts(settings))
+    return CaptureStream(name, address, cv2.CAP_FFMPEG, _timeouts())
 
 
-def open_gstreamer(line: str, settings: StreamSettings = STREAM) -> CaptureStream:
+def open_gstreamer(line: str) -> CaptureStream:
     """A GStreamer pipeline that ends in `appsink`, not yet opened. UsageError: OpenCV was built without GStreamer."""
     if cv2.CAP_GSTREAMER not in cv2.videoio_registry.getStreamBackends():
         raise UsageError(
             f"{line}: this OpenCV has no GStreamer; use the system's OpenCV package, or send the pictures to "
             "standard input as MJPEG"
         )
-    return CaptureStream(line, line, cv2.CAP_GSTREAMER, _timeouts(settings))
+    return CaptureStream(line, line, cv2.CAP_GSTREAMER, _timeouts())
 
 
 def hide_login(address: str) -> str:
@@ -113,8 +113,8 @@ def hide_login(address: str) -> str:
     return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
 
 
-def _timeouts(settings: StreamSettings) -> list[int]:
+def _timeouts() -> list[int]:
     return [
-        *(cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, round(settings.timeout_s * 1e3)),
-        *(cv2.CAP_PROP_READ_TIMEOUT_MSEC, round(settings.timeout_s * 1e3)),
+        *(cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, round(types.TIMEOUT_S * 1e3)),
+        *(cv2.CAP_PROP_READ_TIMEOUT_MSEC, round(types.TIMEOUT_S * 1e3)),
     ]

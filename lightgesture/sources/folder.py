@@ -1,17 +1,18 @@
 """A folder of frames, in natural order of their names."""
 
 import os
+import re
 from collections.abc import Iterator, Sequence
-from types import TracebackType
-from typing import Self
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
-from lightgesture.sources.names import natural_key
-from lightgesture.sources.pictures import is_picture_name, read_picture
+from lightgesture.sources.pictures import depth_of, is_picture_name, read_picture
+from lightgesture.sources.types import Source
+
+_NUMBER = re.compile(r"(\d+)")
 
 
-class FrameFolder:
+class FrameFolder(Source):
     """The pictures of one folder, or those that `files` names; other files and folders in it are passed over.
 
     A folder has no container's time stamps: the time of a frame is its index divided by `fps`. A picture
@@ -23,21 +24,14 @@ class FrameFolder:
         self.name = path
         self._fps = fps
         self._files = list(files) or _list_pictures(path)
-        self.frame_count: int | None = len(self._files)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Nothing is held open between frames."""
+        self.frame_count = len(self._files)
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[InputError] = []
+        depth = depth_of(self.name)
         for index, file in enumerate(self._files):
             try:
-                image = read_picture(os.path.join(self.name, file))
+                image = read_picture(os.path.join(self.name, file), depth)
             except InputError as error:
                 left_out.append(error)
             else:
@@ -45,6 +39,13 @@ class FrameFolder:
         if left_out:
             count = f"{len(left_out)} of {len(self._files)} pictures"
             raise InputError(f"{self.name}: {count} left out; the first: {left_out[0]}")
+
+
+def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
+    """Sort key by which frame 9 comes before frame 10, whatever their zeros and capitals."""
+    parts = _NUMBER.split(name)
+    key = [(int(part), "") if place % 2 else (0, part.casefold()) for place, part in enumerate(parts)]
+    return key, name
 
 
 def _list_pictures(path: str) -> list[str]:

@@ -6,48 +6,44 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
-from types import TracebackType
 from typing import Self
 from urllib.parse import unquote, urlsplit, urlunsplit
 
 from lightgesture.errors import InputError, UsageError
+from lightgesture.sources import types
 from lightgesture.sources.jpeg import JpegSplitter
-from lightgesture.sources.settings import STREAM, StreamSettings
+from lightgesture.sources.types import LiveSource
 
 
-class HttpStream:
+class HttpStream(LiveSource):
     """The JPEG files in the answer to one request, still encoded.
 
     Where the files begin and end is read from themselves, so that neither the boundary of a multipart answer nor
     lengths in its headers need be right. User and password may stand in the address and are kept out of `name`.
     """
 
-    def __init__(self, address: str, settings: StreamSettings = STREAM) -> None:
+    def __init__(self, address: str) -> None:
         self._request, self.name = _make_request(address)
-        self.is_reopened = True
-        self._settings = settings
         self._answer: http.client.HTTPResponse | None = None
         # A camera on the tether is never behind a proxy.
         self._opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
     def __enter__(self) -> Self:
         try:
-            self._answer = self._opener.open(self._request, timeout=self._settings.timeout_s)
+            self._answer = self._opener.open(self._request, timeout=types.TIMEOUT_S)
         except urllib.error.HTTPError as error:
             raise InputError(f"{self.name}: the server answers {error.code} {error.reason}") from None
         except (OSError, http.client.HTTPException) as error:
             raise InputError(f"{self.name}: cannot be opened ({_reason(error)})") from None
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """End the connection."""
         if self._answer is not None:
             self._answer.close()
 
     def __iter__(self) -> Iterator[bytes]:
-        settings = self._settings
-        splitter = JpegSplitter(settings.max_picture_bytes, settings.max_pixels)
+        splitter = JpegSplitter()
         last_s = time.monotonic()
         while chunk := self._read():
             files = splitter.feed(chunk)
@@ -55,15 +51,15 @@ class HttpStream:
             now_s = time.monotonic()
             if files:
                 last_s = now_s
-            elif now_s - last_s > settings.no_picture_s:
+            elif now_s - last_s > types.NO_PICTURE_S:
                 raise InputError(
-                    f"{self.name}: sends data, but no JPEG picture for {settings.no_picture_s:g} s; is it MJPEG?"
+                    f"{self.name}: sends data, but no JPEG picture for {types.NO_PICTURE_S:g} s; is it MJPEG?"
                 )
 
     def _read(self) -> bytes:
         assert self._answer is not None
         try:
-            return self._answer.read1(self._settings.chunk_bytes)
+            return self._answer.read1(types.CHUNK_BYTES)
         except (OSError, http.client.HTTPException, ValueError) as error:
             raise InputError(f"{self.name}: broke off ({_reason(error)})") from None
 

@@ -1,6 +1,7 @@
 """JPEG files found in a stream of bytes, whatever stands between them."""
 
 import re
+from typing import Final
 
 _START = b"\xff\xd8\xff"
 _SCAN_END = re.compile(rb"\xff[^\x00\xd0-\xd7\xff]", re.DOTALL)
@@ -14,6 +15,13 @@ _FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """Markers of segments that tell the picture's size."""
 
 
+MAX_BYTES: Final = 16 << 20
+"""Longest file; a longer one is no picture."""
+
+MAX_PIXELS: Final = 40_000_000
+"""Most pixels of a picture, against files that promise more than fits the memory."""
+
+
 class JpegSplitter:
     """Cuts whole JPEG files out of bytes that come in pieces.
 
@@ -22,7 +30,7 @@ class JpegSplitter:
     damaged, longer than `max_bytes`, or larger than `max_pixels`.
     """
 
-    def __init__(self, max_bytes: int, max_pixels: int) -> None:
+    def __init__(self, max_bytes: int = MAX_BYTES, max_pixels: int = MAX_PIXELS) -> None:
         self._max_bytes, self._max_pixels = max_bytes, max_pixels
         self._buffer = bytearray()
         self._is_begun = self._is_in_scan = False

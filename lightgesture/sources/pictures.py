@@ -1,6 +1,7 @@
 """Single pictures: whatever they hold becomes uint8 (height, width, 3), BGR."""
 
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.console import say
 from lightgesture.errors import InputError
+from lightgesture.features.image import BitDepth, as_bgr8
+from lightgesture.features.types import Image
 
 PICTURE_SUFFIXES = frozenset(
     {
@@ -18,15 +22,14 @@ PICTURE_SUFFIXES = frozenset(
 )
 """File names that are taken for pictures, in small letters."""
 
-SENSOR_BITS = (10, 12, 14, 16)
-"""Bits that cameras fill of a 16-bit picture: the least that holds the brightest pixel is full scale."""
-
 # A depth beyond 8 bits is kept, to be scaled here; everything else is OpenCV's plain reading to BGR,
 # turned upright where the picture says so.
 _FLAGS = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
 
 _START_OF_SCAN = 0xDA
 _END_OF_IMAGE = b"\xff\xd9"
+# Magic number, width, height and the largest value of a portable pixmap, with comments between.
+_PNM_HEADER = re.compile(rb"P[2356]" + rb"(?:\s|#[^\n]*\n)+(\d+)" * 3)
 
 
 def is_picture_name(path: str | os.PathLike[str]) -> bool:
@@ -35,60 +38,55 @@ def is_picture_name(path: str | os.PathLike[str]) -> bool:
     return not name.startswith(".") and os.path.splitext(name)[1].lower() in PICTURE_SUFFIXES
 
 
-def read_picture(path: str | os.PathLike[str]) -> NDArray[np.uint8]:
+def read_picture(path: str | os.PathLike[str], depth: BitDepth | None = None) -> Image:
     """Read a picture to uint8 (height, width, 3), BGR; any name that the system can open will do.
 
-    Grey, 16-bit and four-channel pictures are converted; transparency is dropped. InputError: no such
-    file, empty, cut off, or nothing that OpenCV reads.
+    Grey, 16-bit and four-channel pictures are converted; transparency is dropped. depth: of the pictures of a folder,
+    which are read alike; None: from this picture alone. InputError: no such file, empty, cut off, or nothing that
+    OpenCV reads.
     """
-    content = _read_bytes(os.fspath(path))
+    name = os.fspath(path)
+    content = _read_bytes(name)
     if _is_cut_jpeg(content):
-        raise InputError(f"{os.fspath(path)}: the picture is cut off; copy it again or leave it out")
-    image = _decode(content)
+        raise InputError(f"{name}: the picture is cut off; copy it again or leave it out")
+    image = decode_picture(content)
     if image is None:
         raise InputError(
-            f"{os.fspath(path)}: is no picture that can be read; convert it to PNG or JPEG, or leave it out"
+            f"{name}: is no picture that can be read; convert it to PNG or JPEG, or leave it out"
         )
+    depth = depth or depth_of(name)
+    if image.dtype == np.uint16 and (header := _PNM_HEADER.match(content)):
+        depth.declare(min(int(header[3]), 0xFFFF))
     try:
-        return to_bgr8(image)
+        return depth.bgr8(image)
     except ValueError as error:
-        raise InputError(f"{os.fspath(path)}: {error}; save it with 8 or 16 bits a channel") from error
+        raise InputError(f"{name}: {error}") from error
 
 
-def to_image(content: bytes | NDArray[np.uint8]) -> NDArray[np.uint8]:
+def to_image(content: bytes | Image) -> Image:
     """A picture of a stream, uint8 (height, width, 3), BGR. InputError: the JPEG file is none that can be decoded."""
     if not isinstance(content, bytes):
         return content
-    image = _decode(content)
+    image = decode_picture(content)
     if image is None:
         raise InputError("is damaged")
-    return to_bgr8(image)
+    return as_bgr8(image)
 
 
-def to_bgr8(image: NDArray[Any]) -> NDArray[np.uint8]:
-    """Convert uint8 or uint16, (height, width) or (height, width, 1, 3 or 4), to uint8 (height, width, 3).
-
-    Four channels are BGR and transparency, which is dropped. ValueError: another type or shape.
-    """
-    channels = 1 if image.ndim == 2 else image.shape[-1]
-    if image.ndim not in (2, 3) or channels not in (1, 3, 4) or image.size == 0:
-        raise ValueError(f"shape {image.shape} is no grey or colour picture")
-    if image.dtype == np.uint16:
-        image = _scale_16_bit(image)
-    elif image.dtype != np.uint8:
-        raise ValueError(f"holds {image.dtype} values")
-    if channels == 1:
-        image = cv2.cvtColor(image.reshape(image.shape[:2]), cv2.COLOR_GRAY2BGR)
-    elif channels == 4:
-        image = cv2.cvtColor(image, cv2.COLOR_BGRA2BGR)
-    return np.ascontiguousarray(image, dtype=np.uint8)
+def depth_of(name: str) -> BitDepth:
+    """The bit depth of a source that is to be read, which tells the user where it must be raised."""
+    return BitDepth(lambda text: say(f"{name}: {text}"))
 
 
-def _scale_16_bit(image: NDArray[np.uint16]) -> NDArray[np.uint8]:
-    """Full scale of the sensor to 255; divided by 257 where all 16 bits are used."""
-    brightest = int(image.max())
-    full_scale = next(2**bits - 1 for bits in SENSOR_BITS if brightest < 2**bits)
-    return np.asarray(cv2.convertScaleAbs(image, alpha=255.0 / full_scale), dtype=np.uint8)
+def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:
+    """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads."""
+    # imdecode and not imread, which cannot open every name on every system
+    data = np.frombuffer(content, np.uint8)
+    try:
+        image: NDArray[Any] | None = cv2.imdecode(data, _FLAGS) if data.size else None
+    except cv2.error:  # a header that promises more pixels than OpenCV takes
+        return None
+    return image
 
 
 def _read_bytes(path: str) -> bytes:
@@ -104,15 +102,6 @@ def _read_bytes(path: str) -> bytes:
     if not content:
         raise InputError(f"{path}: is empty (0 bytes); copy it again or leave it out")
     return content
-
-
-def _decode(content: bytes) -> NDArray[Any] | None:
-    # imdecode and not imread, which cannot open every name on every system
-    try:
-        image: NDArray[Any] | None = cv2.imdecode(np.frombuffer(content, np.uint8), _FLAGS)
-    except cv2.error:  # a header that promises more pixels than OpenCV takes
-        return None
-    return image
 
 
 def _is_cut_jpeg(content: bytes) -> bool:

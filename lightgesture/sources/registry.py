@@ -1,18 +1,18 @@
-"""Which class reads which kind of input."""
+"""From what the user names to what reads it."""
 
 import glob
 import os
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
-from lightgesture.sources.folder import FrameFolder
-from lightgesture.sources.settings import DEFAULT_FPS, SourceOptions
+from lightgesture.sources.folder import FrameFolder, natural_key
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
-from lightgesture.sources.types import LiveSource, Source
+from lightgesture.sources.types import LiveSource, Source, SourceOptions
 from lightgesture.sources.video import VideoFile
 
 
@@ -39,6 +39,22 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "standard input": lambda _, options: StandardInputStream(options),
 }
 """Kind of stream to what reads it, given its name and what the user says about it."""
+
+
+def expand_inputs(inputs: Iterable[str]) -> list[str]:
+    """The inputs in the order given, globs replaced by what they match in natural order, each file once.
+
+    A name that exists is taken as it stands, also where it holds `*`, `?` or `[`. A glob that matches
+    nothing stays, so that opening it tells the user. Two names of the same file are one (`a` and `./a`);
+    a link is a file of its own.
+    """
+    found: dict[str, str] = {}
+    for name in inputs:
+        is_glob = not os.path.lexists(name) and glob.has_magic(name)
+        matches = sorted(glob.glob(name, recursive=True), key=natural_key) if is_glob else []
+        for match in matches or [name]:
+            found.setdefault(os.path.normcase(os.path.abspath(match)), match)
+    return list(found.values())
 
 
 def open_source(

@@ -1,20 +1,24 @@
 """Image messages of ROS 1 and ROS 2, raw and compressed, to pictures."""
 
 import sys
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.sources.pictures import to_bgr8
+from lightgesture.features.image import BitDepth
+from lightgesture.features.types import Image
+from lightgesture.sources.pictures import decode_picture
 
 _RAW, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 IMAGE_TYPES = (_RAW, _COMPRESSED)
 """Types of the messages that hold a picture."""
 
 
-class _Layout(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class _Layout:
     """Bits and values of a pixel in a row, and what OpenCV makes BGR with (None: BGR, BGRA or grey already)."""
 
     bits: int
@@ -41,26 +45,21 @@ _LAYOUTS = {
 }
 
 
-def message_to_bgr8(message: Any) -> NDArray[np.uint8]:
+def message_to_bgr8(message: Any, depth: BitDepth) -> Image:
     """Convert a deserialized message, raw or compressed, to uint8 (height, width, 3), BGR.
 
+    depth: of the topic, for "mono16" says how wide a value is stored and not how much of it the camera fills.
     ValueError: its encoding is not known, its data are too short, or it is no picture.
     """
-    return _decompress(message) if hasattr(message, "format") else _unpack(message)
-
-
-def _decompress(message: Any) -> NDArray[np.uint8]:
-    data = np.frombuffer(message.data, np.uint8)
-    try:
-        image = cv2.imdecode(data, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH) if data.size else None
-    except cv2.error:  # a header that promises more pixels than OpenCV takes
-        image = None
+    if not hasattr(message, "format"):
+        return depth.bgr8(_unpack(message))
+    image = decode_picture(message.data)
     if image is None:
         raise ValueError(f"holds no picture (format {message.format!r})")
-    return to_bgr8(image)
+    return depth.bgr8(image)
 
 
-def _unpack(message: Any) -> NDArray[np.uint8]:
+def _unpack(message: Any) -> NDArray[Any]:
     layout = _LAYOUTS.get(message.encoding)
     if layout is None:
         raise ValueError(f"has encoding {message.encoding!r}, known are {', '.join(_LAYOUTS)}")
@@ -76,4 +75,4 @@ def _unpack(message: Any) -> NDArray[np.uint8]:
         rows = values.byteswap() if is_swapped else values
     shape = (height, width) if layout.channels == 1 else (height, width, layout.channels)
     image: NDArray[Any] = rows.reshape(shape)
-    return to_bgr8(image if layout.conversion is None else cv2.cvtColor(image, layout.conversion))
+    return image if layout.conversion is None else cv2.cvtColor(image, layout.conversion)

@@ -3,8 +3,7 @@
 import io
 import sys
 from collections.abc import Iterator
-from types import TracebackType
-from typing import IO, Self
+from typing import IO
 
 import numpy as np
 
@@ -12,35 +11,24 @@ from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.jpeg import JpegSplitter
 from lightgesture.sources.pictures import to_image
-from lightgesture.sources.settings import STREAM, SourceOptions, StreamSettings
-from lightgesture.sources.types import Content
+from lightgesture.sources.types import CHUNK_BYTES, Content, LiveSource, Source, SourceOptions
 
 STANDARD_INPUT = "-"
 """What the user writes for it."""
 
 
-class StandardInputStream:
+class StandardInputStream(LiveSource):
     """The pictures of standard input as they come, still encoded if they are JPEG files.
 
     With `options.size` the bytes are raw pictures, blue, green, red, without anything between them.
     `stream`: another stream of bytes in its place. InputError at the end: not one picture came.
     """
 
-    def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
-    ) -> None:
+    def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
         self.is_reopened = False
-        self._size, self._settings = options.size, settings
+        self._size = options.size
         self._stream = stream or _open_raw()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Standard input is not ours to close."""
 
     def __iter__(self) -> Iterator[Content]:
         is_empty = True
@@ -54,11 +42,11 @@ class StandardInputStream:
             )
 
     def _chunks(self) -> Iterator[bytes]:
-        while chunk := self._stream.read(self._settings.chunk_bytes):
+        while chunk := self._stream.read(CHUNK_BYTES):
             yield chunk
 
     def _jpegs(self) -> Iterator[bytes]:
-        splitter = JpegSplitter(self._settings.max_picture_bytes, self._settings.max_pixels)
+        splitter = JpegSplitter()
         for chunk in self._chunks():
             yield from splitter.feed(chunk)
 
@@ -84,24 +72,13 @@ def _open_raw() -> IO[bytes]:
         return sys.stdin.buffer
 
 
-class StandardInput:
+class StandardInput(Source):
     """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
 
-    def __init__(
-        self, options: SourceOptions, settings: StreamSettings = STREAM, stream: IO[bytes] | None = None
-    ) -> None:
+    def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
-        self.frame_count: int | None = None
         self._fps = options.fps
-        self._stream = StandardInputStream(options, settings, stream)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Standard input is not ours to close."""
+        self._stream = StandardInputStream(options, stream)
 
     def __iter__(self) -> Iterator[Frame]:
         left_out: list[str] = []

@@ -2,41 +2,33 @@
 
 import time
 from collections.abc import Callable, Iterator
-from types import TracebackType
 from typing import Self
 
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
+from lightgesture.sources import types
 from lightgesture.sources.pictures import to_image
-from lightgesture.sources.settings import STREAM, StreamSettings
-from lightgesture.sources.types import LiveSource
+from lightgesture.sources.types import LiveSource, Source
 
 
-class StreamFrames:
+class StreamFrames(Source):
     """The pictures of a stream, each stamped as it comes, in seconds since the first; damaged ones are passed over.
 
     The stream is opened once. It has no end of its own, so that iterating it always ends by an InputError, unless
     whoever iterates has enough: it broke off, ended, or sends nothing that can be decoded. clock: seconds.
     """
 
-    def __init__(
-        self,
-        stream: LiveSource,
-        settings: StreamSettings = STREAM,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
+    def __init__(self, stream: LiveSource, clock: Callable[[], float] = time.monotonic) -> None:
         self.name = stream.name
-        self.frame_count: int | None = None
-        self._stream, self._settings, self._clock = stream, settings, clock
+        self._stream, self._clock = stream, clock
 
     def __enter__(self) -> Self:
         self._stream.__enter__()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._stream.__exit__(kind, error, trace)
+    def close(self) -> None:
+        """Close the stream."""
+        self._stream.close()
 
     def __iter__(self) -> Iterator[Frame]:
         start_s: float | None = None
@@ -54,8 +46,8 @@ class StreamFrames:
         raise InputError(f"{self.name}: the stream ended after {given} pictures")
 
     def _check_wait(self, waited_s: float) -> None:
-        if waited_s > self._settings.no_picture_s:
+        if waited_s > types.NO_PICTURE_S:
             raise InputError(
-                f"{self.name}: sends pictures, but for {self._settings.no_picture_s:g} s none that can be decoded; "
+                f"{self.name}: sends pictures, but for {types.NO_PICTURE_S:g} s none that can be decoded; "
                 "look at what the camera sends"
             )

@@ -2,35 +2,30 @@
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
-from types import TracebackType
-from typing import Self
+from typing import Final
 
 import cv2
 
 from lightgesture.errors import InputError
+from lightgesture.features.image import as_bgr8
 from lightgesture.frames import Frame
-from lightgesture.sources.pictures import is_picture_name, to_bgr8
+from lightgesture.sources.pictures import is_picture_name
+from lightgesture.sources.types import Source
 
+# A video counts as cut off when both more frames and more seconds are missing than are spared.
 
-@dataclass(frozen=True, slots=True)
-class VideoSettings:
-    """When a video counts as cut off: when both more frames and more seconds are missing than are spared.
+SPARE_FRAMES: Final = 2
+"""Missing frames that are forgiven, for some encoders count one or two that hold no picture."""
 
-    spare_frames: missing frames that are forgiven, for some encoders count one or two that hold no picture.
-    spare_s: seconds from the end of the last frame to the promised end that are forgiven where the container
-    stores the number of frames. spare_s_estimated: likewise where the number comes from the duration, which
-    an audio track may stretch. Larger values let longer losses go unnoticed.
-    sniffed_bytes: bytes at the start of a file looked at to tell text from video.
-    """
+SPARE_S: Final = 0.1
+"""Seconds from the end of the last frame to the promised end that are forgiven where the container stores the number
+of frames."""
 
-    spare_frames: int = 2
-    spare_s: float = 0.1
-    spare_s_estimated: float = 0.5
-    sniffed_bytes: int = 4096
+SPARE_S_ESTIMATED: Final = 0.5
+"""Likewise where the number comes from the duration, which an audio track may stretch."""
 
-
-SETTINGS = VideoSettings()
+SNIFFED_BYTES: Final = 4096
+"""Bytes at the start of a file looked at to tell text from video."""
 
 _MP4_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
 """Types of the box that opens an MP4 or QuickTime file, after its size of four bytes."""
@@ -38,7 +33,7 @@ _MP4_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip")
 _TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1b")
 
 
-class VideoFile:
+class VideoFile(Source):
     """A video in any container that OpenCV's FFmpeg reads.
 
     Frames are read in sequence, never by seeking, and the time of each is the container's own time stamp
@@ -47,13 +42,12 @@ class VideoFile:
     iteration: the video ended early.
     """
 
-    def __init__(self, path: str, settings: VideoSettings = SETTINGS) -> None:
+    def __init__(self, path: str) -> None:
         self.name = path
-        start = _read_start(path, settings.sniffed_bytes)
+        start = _read_start(path)
         _refuse_no_video(path, start)
         is_counted = start[:4] == b"RIFF" or start[4:8] in _MP4_BOXES
-        self._spare_s = settings.spare_s if is_counted else settings.spare_s_estimated
-        self._spare_frames = settings.spare_frames
+        self._spare_s = SPARE_S if is_counted else SPARE_S_ESTIMATED
         # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol.
         self._capture = cv2.VideoCapture(os.path.abspath(path))
         if not self._capture.isOpened():
@@ -61,19 +55,15 @@ class VideoFile:
                 f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
             )
         promised = self._capture.get(cv2.CAP_PROP_FRAME_COUNT)
-        self.frame_count: int | None = int(promised) if promised >= 1 else None
+        self.frame_count = int(promised) if promised >= 1 else None
         self._rate = self._capture.get(cv2.CAP_PROP_FPS)
         self._next = self._read(0)
         if self._next is None:
             self._capture.release()
             raise InputError(f"{path}: no frame of this video can be decoded; copy or convert it again")
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Close the file."""
         self._capture.release()
 
     def __iter__(self) -> Iterator[Frame]:
@@ -90,24 +80,24 @@ class VideoFile:
             return None
         # Microseconds are finer than any container's clock and hide the rounding of the division.
         time_s = round(self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000.0, 6)
-        return Frame(to_bgr8(image), index, time_s)
+        return Frame(as_bgr8(image), index, time_s)
 
     def _check_end(self, last: Frame) -> None:
         if self.frame_count is None or self._rate <= 0:
             return
         decoded = last.index + 1
         missing_s = self.frame_count / self._rate - (last.time_s + 1.0 / self._rate)
-        if self.frame_count - decoded > self._spare_frames and missing_s > self._spare_s:
+        if self.frame_count - decoded > SPARE_FRAMES and missing_s > self._spare_s:
             raise InputError(
                 f"{self.name}: the video ends early, after {decoded} of {self.frame_count} frames; "
                 "copy or record it again"
             )
 
 
-def _read_start(path: str, length: int) -> bytes:
+def _read_start(path: str) -> bytes:
     try:
         with open(path, "rb") as stream:
-            return stream.read(length)
+            return stream.read(SNIFFED_BYTES)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}); name a readable file") from None
 

@@ -1,6 +1,7 @@
 """A page for the person topside: the annotated picture, the sentence so far, instructions and state, in a browser."""
 
 from lightgesture.web.listener import WebListener
-from lightgesture.web.settings import WebSettings
 
-__all__ = ["WebListener", "WebSettings"]
+__all__ = [
+    "WebListener",
+]

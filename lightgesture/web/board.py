@@ -9,7 +9,8 @@ import uuid
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any, Final
 
 from lightgesture.features.types import Image
 from lightgesture.records import Record
@@ -18,7 +19,12 @@ ENTRIES = ("instruction", "rejected", "notice")
 """Types of records that are listed."""
 
 
-class Picture(NamedTuple):
+ENTRIES_KEPT: Final = 200
+"""Instructions, rejections and notices that are kept for who comes later."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
     """A picture to be drawn on, and the records since the one before that was taken."""
 
     number: int
@@ -26,7 +32,8 @@ class Picture(NamedTuple):
     records: tuple[Record, ...]
 
 
-class Update(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Update:
     """What is new for one reader. state: for display; entries: those that it has not had, oldest first."""
 
     version: int
@@ -37,13 +44,13 @@ class Update(NamedTuple):
 class Board:
     """The shared state; every method may be called from any thread.
 
-    run: names this run, since numbers begin again in the next. entries: how many are kept.
+    run: names this run, since numbers begin again in the next.
     """
 
-    def __init__(self, entries: int) -> None:
+    def __init__(self) -> None:
         self.run = uuid.uuid4().hex[:12]
         self._changed = threading.Condition()
-        self._entries: deque[dict[str, Any]] = deque(maxlen=entries)
+        self._entries: deque[dict[str, Any]] = deque(maxlen=ENTRIES_KEPT)
         self._state: dict[str, Any] = {
             "state": "idle",
             "sentence": "",
@@ -56,7 +63,7 @@ class Board:
         self._picture: Image | None = None
         self._picture_number = 0
         self._picture_at: float | None = None
-        self._undrawn: deque[Record] = deque(maxlen=entries)
+        self._undrawn: deque[Record] = deque(maxlen=ENTRIES_KEPT)
         self._jpeg, self._jpeg_number = b"", 0
         self._viewers = 0
         self._is_closed = False

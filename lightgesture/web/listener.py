@@ -4,8 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from types import TracebackType
-from typing import Self
+from typing import Final, Self
 
 import cv2
 
@@ -15,11 +14,20 @@ from lightgesture.records import Record
 from lightgesture.results.overlay import Overlay
 from lightgesture.web.board import Board
 from lightgesture.web.server import WebServer
-from lightgesture.web.settings import WebSettings
 
 LOOPBACK = "127.0.0.1"
 STOP_S = 0.1
 """Longest time until the server heeds that it shall stop."""
+
+PICTURES_PER_S: Final = 15.0
+"""Most pictures that a browser gets, a second. Each is drawn and encoded once for all, and only while somebody looks;
+more take time from the decoder on a small board."""
+
+PICTURE_WIDTH: Final = 960
+"""Widest picture that is sent, pixels; wider ones are reduced."""
+
+JPEG_QUALITY: Final = 75
+"""Of the pictures that are sent, 1 to 100."""
 
 Draw = Callable[[Image, Sequence[Record]], Image]
 """Draws records on a picture, uint8 (height, width, 3) BGR, and gives a new one."""
@@ -32,13 +40,10 @@ class WebListener:
     draw: what makes the annotated picture. `show` never waits for a browser, and draws nothing itself.
     """
 
-    def __init__(
-        self, port: int, host: str = LOOPBACK, draw: Draw | None = None, settings: WebSettings | None = None
-    ) -> None:
+    def __init__(self, port: int, host: str = LOOPBACK, draw: Draw | None = None) -> None:
         self._port, self._host = port, host
         self._draw = draw or Overlay().draw
-        self._settings = settings or WebSettings()
-        self._board = Board(self._settings.entries)
+        self._board = Board()
         self._server: WebServer | None = None
         self._threads: list[threading.Thread] = []
 
@@ -46,9 +51,7 @@ class WebListener:
         self.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *reason: object) -> None:
         self.stop()
 
     @property
@@ -62,7 +65,7 @@ class WebListener:
     def start(self) -> None:
         """Begin to serve. UsageError: the address cannot be had."""
         try:
-            self._server = WebServer(self._host, self._port, self._board, self._settings)
+            self._server = WebServer(self._host, self._port, self._board)
         except OSError as error:
             raise UsageError(
                 f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"
@@ -89,13 +92,12 @@ class WebListener:
 
     def _encode(self) -> None:
         """Draw and encode the newest picture, again and again, while somebody looks."""
-        settings = self._settings
         while (picture := self._board.picture_to_draw()) is not None:
             start = time.monotonic()
-            drawn = _fitted(self._draw(picture.image, picture.records), settings.picture_width)
-            jpeg = cv2.imencode(".jpg", drawn, [cv2.IMWRITE_JPEG_QUALITY, settings.jpeg_quality])[1].tobytes()
+            drawn = _fitted(self._draw(picture.image, picture.records), PICTURE_WIDTH)
+            jpeg = cv2.imencode(".jpg", drawn, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()
             self._board.post_jpeg(picture.number, jpeg)
-            time.sleep(max(1.0 / settings.pictures_per_s - (time.monotonic() - start), 0.0))
+            time.sleep(max(1.0 / PICTURES_PER_S - (time.monotonic() - start), 0.0))
 
 
 def _fitted(image: Image, width: int) -> Image:

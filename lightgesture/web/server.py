@@ -3,22 +3,21 @@
 Every browser has a thread of its own, and there is a bound to everything that one may ask for.
 """
 
+import ipaddress
 import json
 import socket
 import socketserver
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
-from typing import Any, cast
+from typing import Any, Final, cast
 from urllib.parse import urlsplit
 
 from lightgesture.web.board import Board, Update
-from lightgesture.web.hosts import is_known, known_names
-from lightgesture.web.settings import WebSettings
 
 PAGES = {
     "/": ("page.html", "text/html; charset=utf-8"),
@@ -38,6 +37,29 @@ HEADERS = {
 }
 """Of every answer: nothing but what this server gives is loaded, and no other site may show it."""
 
+# Beyond these numbers a browser is told to come again later.
+
+VIEWERS: Final = 4
+"""Browsers that get pictures at a time."""
+
+LISTENERS: Final = 8
+"""Browsers that get updates at a time."""
+
+CONNECTIONS: Final = 24
+"""Connections of any kind at a time."""
+
+UPDATES_PER_S: Final = 10.0
+"""Most updates of the sentence and the state that a browser gets, a second."""
+
+CLIENT_TIMEOUT_S: Final = 10.0
+"""A browser that takes nothing for so many seconds is left."""
+
+BEAT_S: Final = 2.0
+"""Longest time without a word to a browser, seconds, by which one that has gone is noticed."""
+
+SEND_BUFFER: Final = 128 * 1024
+"""Bytes that may wait in the system for a browser: what lies there is old by the time it is seen."""
+
 BOUNDARY = "lightgesture"
 _BUSY = b"HTTP/1.0 503 Service Unavailable\r\nRetry-After: 5\r\nContent-Length: 0\r\n\r\n"
 
@@ -47,12 +69,12 @@ class WebServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, host: str, port: int, board: Board, settings: WebSettings) -> None:
-        self.board, self.settings = board, settings
+    def __init__(self, host: str, port: int, board: Board) -> None:
+        self.board = board
         self.names = known_names(host)
-        self.viewers = threading.BoundedSemaphore(settings.viewers)
-        self.listeners = threading.BoundedSemaphore(settings.listeners)
-        self._connections = threading.BoundedSemaphore(settings.connections)
+        self.viewers = threading.BoundedSemaphore(VIEWERS)
+        self.listeners = threading.BoundedSemaphore(LISTENERS)
+        self._connections = threading.BoundedSemaphore(CONNECTIONS)
         folder = files("lightgesture.web") / "static"
         self.pages = {path: ((folder / name).read_bytes(), kind) for path, (name, kind) in PAGES.items()}
         self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
@@ -92,9 +114,8 @@ class _Handler(BaseHTTPRequestHandler):
         return cast(WebServer, self.server)
 
     def setup(self) -> None:
-        settings = self._web.settings
-        self.request.settimeout(settings.client_timeout_s)
-        self.request.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, settings.send_buffer)
+        self.request.settimeout(CLIENT_TIMEOUT_S)
+        self.request.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
         super().setup()
 
     def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - the base class's name
@@ -121,7 +142,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here; the page is at /")
 
     def _stream(self) -> None:
-        board, settings = self._web.board, self._web.settings
+        board = self._web.board
         with self._place(self._web.viewers) as is_free:
             if not is_free:
                 return
@@ -132,26 +153,26 @@ class _Handler(BaseHTTPRequestHandler):
                 while not board.is_closed:
                     # Where no new one comes, the last is sent again: some browsers show a picture only when the next
                     # begins, and one that has gone is noticed.
-                    number, jpeg = board.jpeg(number, settings.beat_s) or (number, jpeg)
+                    number, jpeg = board.jpeg(number, BEAT_S) or (number, jpeg)
                     if jpeg and not board.is_closed:
                         self.wfile.write(to_part(jpeg))
 
     def _events(self) -> None:
-        board, settings = self._web.board, self._web.settings
+        board = self._web.board
         with self._place(self._web.listeners) as is_free:
             if not is_free:
                 return
             self._begin("text/event-stream")
             version, entry = -1, self._last_entry()
             while not board.is_closed:
-                update = board.update(version, entry, settings.beat_s)
+                update = board.update(version, entry, BEAT_S)
                 if update is None:
                     self.wfile.write(b": still here\n\n")
                     continue
                 self.wfile.write(to_events(update, board.run))
                 version = update.version
                 entry = update.entries[-1]["number"] if update.entries else entry
-                time.sleep(1.0 / settings.updates_per_s)
+                time.sleep(1.0 / UPDATES_PER_S)
 
     def _last_entry(self) -> int:
         """Number of the last entry that a browser had before it lost the connection; 0 in another run."""
@@ -206,3 +227,43 @@ def to_events(update: Update, run: str) -> bytes:
         for entry in update.entries
     ]
     return "".join(parts).encode("ascii")
+
+
+def known_names(host: str) -> frozenset[str]:
+    """Names that a browser may call a server by that is bound to `host`, in small letters.
+
+    A page of another site can make its own name point to this machine and read what it likes ("DNS rebinding"). It
+    cannot make a bare address do so, and it does not know the names of this machine.
+    """
+    own = socket.gethostname().lower()
+    names = {"localhost", host.lower(), own, own.split(".")[0], own.split(".")[0] + ".local"}
+    return frozenset(name for name in names if name)
+
+
+def is_known(header: str | None, names: Iterable[str]) -> bool:
+    """Whether a `Host` header, with or without a port, is an address or one of the names.
+
+    Any port is right, for a tunnel has one of its own.
+    """
+    name = name_of((header or "").strip())
+    if name is None:
+        return False
+    return name.lower().rstrip(".") in names or _is_address(name)
+
+
+def name_of(header: str) -> str | None:
+    """The name or address of a `Host` header without its port; None where it is malformed."""
+    if header.startswith("["):
+        name, bracket, port = header[1:].partition("]")
+        is_port = port == "" or (port[0] == ":" and port[1:].isdigit())
+        return name if bracket and is_port and ":" in name else None
+    name, colon, port = header.partition(":")
+    return name if name and (not colon or port.isdigit()) else None
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

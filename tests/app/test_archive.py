@@ -12,8 +12,7 @@ import pytest
 
 from lightgesture.archive.board import Board, table
 from lightgesture.archive.folder import LOCK, MANIFEST
-from lightgesture.archive.messages import Advanced, Done, Opened, Outcome, Printed
-from lightgesture.archive.tasks import make_tasks
+from lightgesture.archive.tasks import Advanced, Done, Opened, Outcome, Printed, make_tasks
 from lightgesture.errors import ExitStatus
 
 TIMES = ("ms_per_frame", "stages_ms")

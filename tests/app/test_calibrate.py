@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.actions import calibrate as calibration
-from lightgesture.actions.calibrate import CalibrationSettings, learn, show_hands
+from lightgesture import calibration
+from lightgesture.calibration import LEAST_SEPARATION, learn, show_hands
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.profile import load_profile
@@ -106,10 +106,9 @@ def test_what_colour_cannot_tell_is_refused_unless_forced(run, make_picture, nam
 
 def test_hands_that_colour_alone_does_not_lift_out_are_refused(monkeypatch):
     monkeypatch.setattr(calibration, "proposed_share", lambda images, boxes, profile=None: 0.3)
-    settings = CalibrationSettings()
-    shown = show_hands(Stream([_gloves(seed) for seed in range(6)]), BOXES, settings)
-    result = learn(shown, "glove", "drawn", settings)
-    assert result.profile.separation > settings.least_separation
+    shown = show_hands(Stream([_gloves(seed) for seed in range(6)]), BOXES, 5.0)
+    result = learn(shown, "glove", "drawn")
+    assert result.profile.separation > LEAST_SEPARATION
     assert result.lack == "only 0.30 of the hands stand out by it, fewer than 0.5"
 
 
@@ -136,8 +135,8 @@ def test_no_hands_is_one_line(run, make_folder, tmp_path):
         (["--seconds", "nan"], "argument --seconds"),
         (["--seconds", "soon"], "argument --seconds"),
         (["--kind", "mitten"], "argument --kind: invalid choice"),
-        (["--size", "640"], "argument --size: 640 is no size"),
-        (["--size", "0x480"], "argument --size: 0x480 is no size"),
+        (["--size", "640"], "--size: should be WxH, not '640'; change it"),
+        (["--size", "0x480"], "--size: should be WxH, not '0x480'"),
     ],
 )
 def test_wrong_options_are_one_line(run, make_folder, options, message):
@@ -165,17 +164,19 @@ def test_a_box_outside_the_picture_is_told(run, gloves):
     assert "--hands 500,0,90,90 is not within its pictures of 560 x 300 pixels" in result.err[0]
 
 
-def test_the_middle_box_is_square_and_central():
+def test_the_middle_box_is_square_and_central(monkeypatch):
+    monkeypatch.setattr(calibration, "MIDDLE", 0.2)
     colour = ColourStage().process(np.zeros((300, 560, 3), np.uint8))
-    placer = calibration._Placer("middle", "a", CalibrationSettings(middle=0.2))
+    placer = calibration._Placer("middle", "a")
     assert placer.boxes(colour) == [(250, 120, 60, 60)]
 
 
 @pytest.mark.parametrize("frames", [4, 10, 11, 19, 20, 21, 47, 200])
-def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(frames):
+def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(monkeypatch, frames):
+    monkeypatch.setattr(calibration, "PICTURES", 10)
     images = [np.full((12, 16, 3), index, np.uint8) for index in range(frames)]
     stream = Stream(images, step_s=0.1)
-    taken, broke_off = calibration._look(stream, CalibrationSettings(seconds=4.95, pictures=10))
+    taken, broke_off = calibration._look(stream, 4.95)
     assert broke_off is None
     in_time = min(frames, 50)
     assert stream.given == min(frames, 51)
@@ -190,17 +191,17 @@ def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(fram
 def test_a_source_that_breaks_off_serves_if_enough_was_seen():
     cut = InputError("stream: ended early")
     images = [_gloves(seed) for seed in range(5)]
-    shown = show_hands(Stream(images, error=cut), BOXES, CalibrationSettings())
+    shown = show_hands(Stream(images, error=cut), BOXES, 5.0)
     assert (shown.looked_at, shown.broke_off) == (5, "stream: ended early")
     with pytest.raises(InputError, match="ended early"):
-        show_hands(Stream(images[:3], error=cut), BOXES, CalibrationSettings())
+        show_hands(Stream(images[:3], error=cut), BOXES, 5.0)
 
 
 def test_pictures_of_both_hands_go_before_those_of_one(monkeypatch):
     counts = iter([1, 2, 2, 1, 2, 2, 0])
     monkeypatch.setattr(calibration._Finder, "boxes", lambda self, colour: list(BOXES[: next(counts)]))
-    shown = show_hands(Stream([_gloves(seed) for seed in range(7)]), None, CalibrationSettings())
+    shown = show_hands(Stream([_gloves(seed) for seed in range(7)]), None, 5.0)
     assert (shown.hands, len(shown.images), shown.looked_at) == (2, 4, 7)
     counts = iter([1, 2, 1, 0, 1])
-    shown = show_hands(Stream([_gloves(seed) for seed in range(5)]), None, CalibrationSettings())
+    shown = show_hands(Stream([_gloves(seed) for seed in range(5)]), None, 5.0)
     assert (shown.hands, len(shown.images)) == (2, 4)

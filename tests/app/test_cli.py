@@ -63,6 +63,37 @@ def test_wrong_usage_is_one_line(run, arguments, message):
     assert result.err[0].startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "missing", "extra"),
+    [
+        (["train", "cnn", "--data", "."], "lightgesture.training", "train"),
+        (["train", "--help"], "lightgesture.training", "train"),
+        (["evaluate"], "lightgesture.benchmarks", "train"),
+        (["synth", "--seed", "1"], "lightgesture.synth", "train"),
+        (["doctor"], "torch", "train"),
+    ],
+)
+def test_a_command_that_lacks_a_package_names_the_extra_that_brings_it(
+    run, monkeypatch, arguments, missing, extra
+):
+    def refuse(*_):
+        raise ModuleNotFoundError(f"No module named '{missing}.x'", name=f"{missing}.x")
+
+    monkeypatch.setattr("lightgesture.cli.importlib.import_module", refuse)
+    result = run(*arguments)
+    assert result.status == ExitStatus.USAGE
+    assert result.out == []
+    assert result.err == [
+        f"lightgesture: {missing} is needed and not installed; pip install 'lightgesture[{extra}]'"
+    ]
+
+
+def test_a_package_that_no_extra_brings_is_a_defect(run, monkeypatch):
+    monkeypatch.setattr("lightgesture.cli.COMMANDS", {"doctor": ("lightgesture.no_such_module", "missing")})
+    with pytest.raises(ModuleNotFoundError, match="no_such_module"):
+        run("doctor")
+
+
 class ClosedPipe(io.StringIO):
     def write(self, text):
         raise BrokenPipeError(text)

@@ -7,9 +7,9 @@ import sys
 
 import pytest
 
-from lightgesture.actions import doctor
-from lightgesture.actions.doctor import FIRST, SAMPLE_TEXT, Probe, examine, run_probe, why_not_imported
+from lightgesture.doctor import examination as doctor
 from lightgesture.doctor import facts as doctor_facts
+from lightgesture.doctor.examination import FIRST, SAMPLE_TEXT, Probe, examine, run_probe, why_not_imported
 from lightgesture.doctor.facts import needs_of_extras, processor, read_memory
 from lightgesture.doctor.probe import ONLY_FIRST, peak_mib
 from lightgesture.errors import ExitStatus

@@ -9,7 +9,7 @@ import pytest
 
 from lightgesture.errors import ExitStatus
 from lightgesture.fsm import load_grammar
-from lightgesture.grammar.drawing import DrawingSettings, lay_out
+from lightgesture.grammar.drawing import lay_out
 from lightgesture.grammar.report import merge_words
 
 BUNDLED = Path(load_grammar().file).read_text(encoding="utf-8")
@@ -162,13 +162,13 @@ class TestDraw:
         out = tmp_path / "graph.png"
         assert run("grammar", "draw", EXAMPLES / "repeat.toml", "--out", out).status == ExitStatus.OK
         picture = cv2.imread(str(out))
-        graph = lay_out(load_grammar(EXAMPLES / "repeat.toml"), DrawingSettings())
+        graph = lay_out(load_grammar(EXAMPLES / "repeat.toml"))
         assert picture.shape == (graph.size[1] * 2, graph.size[0] * 2, 3)
         assert 0.01 < float(np.mean(picture < 128)) < 0.2
 
     def test_nothing_leaves_the_picture_and_no_states_overlap(self):
         for path in (None, EXAMPLES / "sonar.toml", EXAMPLES / "repeat.toml"):
-            graph = lay_out(load_grammar(path), DrawingSettings())
+            graph = lay_out(load_grammar(path))
             points = [point for arrow in graph.arrows for point in arrow] + [
                 place for place, _ in graph.circles
             ]

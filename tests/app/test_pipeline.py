@@ -1,21 +1,22 @@
 """The real stages joined up, on drawn frames: records, sizes, sides and clocks."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from lightgesture import Pipeline
 from lightgesture.actions.decode import SAMPLE
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.settings import LEARNED
 from lightgesture.features.types import Candidates, HandRegion
-from lightgesture.hands.reading import (
-    ReadingSettings,
-    ReadingStage,
-    Sighting,
-    clearest,
-    is_crowded,
-    read_token,
-)
+from lightgesture.front_end import FrontEnd
+from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
+from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
+from lightgesture.hands.pictures import draw_regions
+from lightgesture.hands.reading import clearest, is_crowded, read_token
 from lightgesture.models import load_classifier
-from lightgesture.records import FrameRecord, Hand, SummaryRecord
+from lightgesture.records import FrameRecord, SummaryRecord
 from lightgesture.sources import open_source
 from lightgesture.stage_clock import KEPT_TIMES, StageClock
 
@@ -107,17 +108,15 @@ def test_time_that_stands_still_or_runs_back_raises_nothing():
         pipeline.process(_noise(), time_s)
 
 
-def test_a_mirrored_picture_gives_the_mirrored_boxes_and_the_same_sides(monkeypatch):
+def test_a_mirrored_picture_gives_the_mirrored_boxes_and_the_same_sides():
     region = HandRegion((100, 50, 60, 80), np.zeros((3, 2), np.int32), None, 0.9)
     other = HandRegion((400, 50, 60, 80), np.zeros((3, 2), np.int32), None, 0.9)
     pairs = np.array([[0, 0.9], [0.9, 0]], np.float32)
 
     def boxes_of(mirrored):
-        pipeline = Pipeline(mirrored=mirrored)
-        monkeypatch.setattr(
-            pipeline._regions, "process", lambda _: Candidates((region, other), pairs, (640, 480))
-        )
-        record = pipeline.recognize(_noise())
+        reading = ReadingStage(FakeClassifier([[0.9, 0.1, 0.0]] * 2))
+        find = FakeRegions(Candidates((region, other), pairs, (640, 480)))
+        record = Pipeline(HandReader(reading, find=find, mirrored=mirrored)).recognize(_noise())
         return {hand.side: hand.box for hand in record.hands}
 
     assert boxes_of(False) == {"right": (100, 50, 60, 80), "left": (400, 50, 60, 80)}
@@ -128,7 +127,7 @@ def test_the_clearest_extent_is_read():
     rows = [[0.1, 0.2, 0.7], [0.05, 0.9, 0.05], [0.6, 0.2, 0.2]]
     stage = ReadingStage(FakeClassifier(rows))
     boxes = ((10, 10, 30, 60), (10, 10, 30, 40), (12, 12, 20, 20))
-    (hand,) = stage.process(_noise(), [Sighting("left", boxes, 7)])
+    (hand,) = stage.process(_noise(), [hand_of("left", *boxes, number=7)])
     assert (hand.token, hand.box, hand.track, hand.reason) == ("5", boxes[1], 7, None)
     assert clearest(np.array(rows, np.float32), CLASSES) == 1
 
@@ -188,11 +187,14 @@ def test_a_frame_runs_in_one_thread_of_linear_algebra_and_gives_the_others_back(
             library.num_threads for library in ThreadpoolController().select(user_api="blas").lib_controllers
         ]
 
-    pipeline, inside = Pipeline(), []
-    process = pipeline._colour.process
-    monkeypatch.setattr(
-        pipeline._colour, "process", lambda image: (inside.append(counts()), process(image))[1]
-    )
+    inside = []
+
+    class Colour(ColourStage):
+        def process(self, image):
+            inside.append(counts())
+            return super().process(image)
+
+    pipeline = Pipeline(HandReader(ReadingStage(FakeClassifier([])), colour=Colour()))
     with threadpool_limits(2, user_api="blas"):
         before = counts()
         pipeline.process(_noise(), 0.0)
@@ -204,13 +206,13 @@ def test_a_frame_runs_in_one_thread_of_linear_algebra_and_gives_the_others_back(
 
 def test_an_uncertain_side_lowers_the_confidence():
     stage = ReadingStage(FakeClassifier([[1.0, 0.0, 0.0]]))
-    (hand,) = stage.process(_noise(), [Sighting("left", ((10, 10, 30, 60),), None, certainty=0.8)])
+    (hand,) = stage.process(_noise(), [hand_of("left", (10, 10, 30, 60), certainty=0.8)])
     assert hand.confidence == pytest.approx(0.8)
 
 
 def test_each_hand_is_read_from_its_own_rows():
     classifier = FakeClassifier([[0.9, 0.1, 0.0], [0.1, 0.8, 0.1], [0.2, 0.7, 0.1]])
-    first, second = Sighting("right", ((1, 1, 9, 9),), 1), Sighting("left", ((9, 9, 9, 9), (8, 8, 9, 9)), 2)
+    first, second = hand_of("right", (1, 1, 9, 9)), hand_of("left", (90, 9, 9, 9), (88, 8, 9, 9))
     hands = ReadingStage(classifier).process(_noise(), [first, second])
     assert [hand.token for hand in hands] == ["0", "5"]
     assert classifier.asked[0][1] == ["right", "left", "left"]
@@ -223,9 +225,6 @@ def test_no_sighting_asks_no_classifier():
 
 
 def test_the_picture_of_the_regions_shows_a_box_where_there_is_no_outline():
-    from lightgesture.features.types import Candidates, HandRegion
-    from lightgesture.hands.pictures import draw_regions
-
     empty = np.zeros((0, 2), np.int32)
     outline = np.array([[50, 20], [60, 20], [55, 35]], np.int32)
     regions = (
@@ -254,66 +253,83 @@ def test_frames_of_any_kind_are_read_as_their_bgr_version(kind):
             seen.append(image_bgr)
             return super().probabilities(image_bgr, boxes, sides)
 
-    pipeline = Pipeline()
-    pipeline._reading = ReadingStage(Reader([[0.9, 0.05, 0.05]] * 8))
-    settings = pipeline._regions.settings
-    pipeline._regions = FakeRegions(settings)
-    pipeline.recognize(other)
+    region = HandRegion((60, 40, 30, 40), np.zeros((0, 2), np.int32), None, 0.9)
+    find = FakeRegions(Candidates((region,), np.zeros((1, 1), np.float32), (160, 120)))
+    reading = ReadingStage(Reader([[0.9, 0.05, 0.05]] * 8))
+    Pipeline(HandReader(reading, find=find)).recognize(other)
     np.testing.assert_array_equal(seen[0], bgr)
 
 
 class FakeRegions:
-    """Finds a hand in the middle of every frame."""
+    """Finds the same in every frame."""
 
-    def __init__(self, settings):
-        self.settings = settings
+    settings = LEARNED
+
+    def __init__(self, candidates):
+        self.candidates = candidates
 
     def process(self, colour):
-        from lightgesture.features.types import Candidates, HandRegion
+        return self.candidates
 
-        region = HandRegion((60, 40, 30, 40), np.zeros((0, 2), np.int32), None, 0.9)
-        return Candidates((region,), np.zeros((1, 1), np.float32), colour.source_size)
+    def follow(self, colour, boxes):
+        return None
+
+
+def hand_of(side, box, *alternatives, number=1, certainty=1.0):
+    return SimpleNamespace(side=side, box=box, alternatives=alternatives, number=number, certainty=certainty)
+
+
+class Recording(FrontEnd):
+    """What a recording of signs says, a frame at a time: a front end that looks at no picture."""
+
+    def __init__(self, shown):
+        super().__init__()
+        self.shown_signs = iter(shown)
+
+    def process(self, image, time_s):
+        return next(self.shown_signs)
+
+
+def decode(shown, **options):
+    """All records of a recording of signs, thirty frames a second."""
+    pipeline = Pipeline(Recording(shown), frames=False, **options)
+    picture = np.zeros((4, 4, 3), np.uint8)
+    return [
+        (frame, record) for frame in range(len(shown)) for record in pipeline.process(picture, frame / 10)
+    ]
 
 
 def test_hands_in_view_that_are_not_read_drop_the_sentence():
     """The decoder is told of them, so that a sign that nobody could read is not passed over."""
-    pipeline = Pipeline(hold=4)
-
-    def show(left, right, count):
-        hands = tuple(
-            Hand(side=side, token=token, confidence=0.9, box=(0, 0, 9, 9), track=1, reason=None)
-            for side, token in (("left", left), ("right", right))
-            if token != "out of view"
-        )
-        return [event for _ in range(count) for event in pipeline._decode(hands, 0.0, 0)]
-
-    for pair in (("0", "0"), ("5", "5")):
-        show(*pair, 4)
-    assert not [event for event in show("out of view", "out of view", 20) if event.type == "rejected"]
-    (rejected,) = [event for event in show("out of view", None, 5) if event.type == "rejected"]
+    signed = [Signs.of_tokens("0", "0")] * 4 + [Signs.of_tokens("5", "5")] * 4 + [Signs()] * 20
+    records = decode([*signed, *[Signs(right=Sign(None, reason="partial"))] * 8], hold=4)
+    ((frame, rejected),) = [item for item in records if item[1].type == "rejected"]
     assert (rejected.reason, rejected.text) == ("unread_sign", "STOP HOVER")
+    assert frame >= len(signed)
 
 
 def test_hold_may_be_given_in_seconds():
-    pipeline = Pipeline(hold_seconds=0.2)
-    hands = tuple(
-        Hand(side=side, token="0", confidence=0.9, box=(0, 0, 9, 9), track=1, reason=None)
-        for side in ("left", "right")
-    )
-    said = [
-        frame
-        for frame in range(5)
-        for event in pipeline._decode(hands, frame / 10, frame)
-        if event.type == "word"
-    ]
-    assert said == [2]
+    records = decode([Signs.of_tokens("0", "0")] * 5, hold_seconds=0.2)
+    assert [frame for frame, record in records if record.type == "word"] == [2]
+
+
+def test_a_decoder_may_be_given():
+    decoder = Decoder(load_grammar(), hold=2, source="mine")
+    records = decode([Signs.of_tokens("0", "0")] * 5, decoder=decoder)
+    assert [(frame, record.source) for frame, record in records if record.type == "word"] == [(1, "mine")]
+
+
+@pytest.mark.parametrize("option", [{"model": "svm"}, {"mirrored": True}, {"selector": "classical"}])
+def test_options_of_hands_beside_another_front_end_are_refused(option):
+    with pytest.raises(ValueError, match=next(iter(option))):
+        Pipeline(Recording([]), **option)
 
 
 def test_times_of_a_long_stream_take_no_more_memory():
     clock = StageClock()
     for _ in range(KEPT_TIMES + 500):
-        with clock.stage("colour"):
-            pass
+        clock.start()
+        clock.lap("colour")
         clock.end_frame()
-    assert len(clock._frames) == len(clock._stages["colour"]) == KEPT_TIMES
+    assert len(clock.frames_ms) == len(clock.stages_ms["colour"]) == KEPT_TIMES
     assert set(clock.per_stage()) == {"colour"}

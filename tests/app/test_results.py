@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 
 import pytest
 import webvtt
@@ -10,7 +11,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
 from lightgesture.records import SummaryRecord
 from lightgesture.results import WRITERS, describe, open_writer, output_stems, to_json_line
-from lightgesture.results.atomic import replacing
+from lightgesture.results.atomic import replacing, replacing_folder
 from lightgesture.results.spreadsheet import COLUMNS
 
 
@@ -150,6 +151,45 @@ def test_place_that_cannot_be_written(tmp_path):
         replacing(tmp_path / "file" / "a") as temporary,
     ):
         temporary.write_bytes(b"")
+
+
+def test_a_folder_is_there_whole_or_not_at_all(tmp_path):
+    place = tmp_path / "deep" / "clip"
+    with pytest.raises(ZeroDivisionError), replacing_folder(place) as temporary:
+        (temporary / "a").write_text(str(1 / 0))
+    assert not list(place.parent.iterdir())
+    for text in ("first", "second"):
+        with replacing_folder(place) as temporary:
+            (temporary / "deeper").mkdir()
+            (temporary / "deeper" / text).write_text(text)
+            assert not (place / "deeper" / text).exists()
+        assert [file.name for file in place.rglob("*")] == ["deeper", text]
+    assert list(place.parent.iterdir()) == [place]
+    with (
+        pytest.raises(UsageError, match="cannot be written"),
+        replacing_folder(place / "deeper" / text / "x"),
+    ):
+        pass
+
+
+def test_a_folder_that_another_process_put_there_meanwhile_stays(tmp_path, monkeypatch):
+    place = tmp_path / "clip"
+    place.mkdir()
+    (place / "theirs").touch()
+    monkeypatch.setattr("lightgesture.results.atomic.shutil.rmtree", lambda *_, **__: None)
+    with replacing_folder(place) as temporary:
+        (temporary / "ours").touch()
+    assert [file.name for file in place.iterdir()] == ["theirs"]
+
+
+def test_content_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
+    order = []
+    monkeypatch.setattr(os, "fsync", lambda descriptor: order.append(os.fstat(descriptor).st_size))
+    monkeypatch.setattr(os, "replace", lambda source, target: order.append(target.name))
+    with replacing(tmp_path / "a.bin", ".bin") as temporary:
+        assert temporary.suffix == ".bin"
+        temporary.write_bytes(b"12345")
+    assert order == [5, "a.bin"]
 
 
 def test_long_names_can_be_written(tmp_path):

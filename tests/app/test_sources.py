@@ -7,11 +7,10 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.config.settings import DEFAULT_FPS
+from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError
 from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
-from lightgesture.sources.pictures import to_bgr8
-from lightgesture.sources.video import VideoFile, VideoSettings
+from lightgesture.sources.video import VideoFile
 
 
 def read_all(path, **options):
@@ -70,13 +69,14 @@ def test_video_that_ends_early_yields_what_there_is(make_video, name, fourcc):
     assert 10 < len(frames) < 50
 
 
-def test_lost_frames_within_the_settings_are_forgiven(make_video):
+@pytest.mark.parametrize("spared", [{"SPARE_S": 2.0}, {"SPARE_FRAMES": 50}])
+def test_lost_frames_within_what_is_spared_are_forgiven(make_video, monkeypatch, spared):
     path = make_video("a.avi", 60)
     content = path.read_bytes()
     path.write_bytes(content[: len(content) // 2])
-    with VideoFile(str(path), VideoSettings(spare_s=2.0)) as source:
-        assert len(list(source)) < 50
-    with VideoFile(str(path), VideoSettings(spare_frames=50)) as source:
+    for name, value in spared.items():
+        monkeypatch.setattr(f"lightgesture.sources.video.{name}", value)
+    with VideoFile(str(path)) as source:
         assert len(list(source)) < 50
 
 
@@ -179,31 +179,42 @@ def test_depths_and_channels(make_picture, suffix):
     assert read_picture(make_picture(f"four{suffix}", four))[3, 3].tolist() == [10, 20, 30]
 
 
-@pytest.mark.parametrize("brightest", [1023, 4095, 16383, 65535])
-def test_sensor_depth_is_full_scale(brightest):
-    image = np.zeros((4, 4), np.uint16)
-    image[0, 0], image[1, 1] = brightest, brightest // 2
-    scaled = to_bgr8(image)
-    assert scaled[0, 0].tolist() == [255] * 3
-    assert scaled[1, 1, 0] in (127, 128)
+@pytest.mark.parametrize("bits", [10, 12, 16])
+@pytest.mark.parametrize("suffix", [".png", ".pgm"])
+def test_a_folder_has_one_bit_depth(tmp_path, capsys, bits, suffix):
+    """A light that is dimmed: each picture is darker than the one before, by as much as it was."""
+    full = 2**bits - 1
+    levels = [full, full // 2, full // 4, full // 16, full // 64, 0]
+    for number, level in enumerate(levels):
+        picture = np.full((6, 8), level, np.uint16)
+        picture[0] = level // 2
+        if suffix == ".png":
+            cv2.imwrite(str(tmp_path / f"{number}.png"), picture)
+        else:
+            header = f"P5 # camera\n8 6\n{full}\n".encode()
+            (tmp_path / f"{number}.pgm").write_bytes(header + picture.astype(">u2").tobytes())
+    seen = [int(frame.image[3, 3, 0]) for frame in read_all(tmp_path)]
+    assert seen == [level >> (bits - 8) for level in levels]
+    assert capsys.readouterr().err == ""
 
 
-@pytest.mark.parametrize(
-    "image",
-    [
-        np.zeros((4, 4, 3), np.float32),
-        np.zeros((4, 4, 2), np.uint8),
-        np.zeros((0, 4, 3), np.uint8),
-        np.zeros(4),
-    ],
-)
-def test_other_arrays_are_refused(image):
-    with pytest.raises(ValueError, match=r"holds float|is no grey or colour picture"):
-        to_bgr8(image)
+def test_a_folder_that_grows_brighter_than_its_first_picture_says_so_once(tmp_path, capsys):
+    for number, level in enumerate((900, 1000, 4000, 1000, 4095)):
+        cv2.imwrite(str(tmp_path / f"{number}.png"), np.full((6, 8), level, np.uint16))
+    seen = [int(frame.image[0, 0, 0]) for frame in read_all(tmp_path)]
+    assert seen == [900 >> 2, 1000 >> 2, 4000 >> 4, 1000 >> 4, 255]
+    assert capsys.readouterr().err.splitlines() == [
+        f"lightgesture: {tmp_path}: a picture is brighter than 10 bits can be; read with 12 bits from here on"
+    ]
+
+
+@pytest.mark.parametrize("bits", [10, 12, 14, 16])
+def test_a_single_picture_is_scaled_by_itself(make_picture, bits):
+    assert (read_picture(make_picture("a.png", np.full((4, 4), 2**bits - 1, np.uint16))) == 255).all()
 
 
 def test_float_picture(make_picture):
-    with pytest.raises(InputError, match=r"holds float32 values; save it with 8 or 16 bits"):
+    with pytest.raises(InputError, match=r"frame of float32 \(4, 4, 3\): pixels must be uint8 or uint16"):
         read_picture(make_picture("a.tiff", np.zeros((4, 4, 3), np.float32)))
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_scenarios import Scenario
+from lightgesture.benchmarks.suite.scenarios import Scenario
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.synth.scene import SceneFrame
 from lightgesture.training.datasets import DATA_FOLDER

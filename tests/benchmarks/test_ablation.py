@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks.ablation import ablation_table
-from lightgesture.benchmarks.ablation_stages import (
+from lightgesture.benchmarks.finding.ablation import ablation_table
+from lightgesture.benchmarks.finding.ablation_stages import (
     ONE_THRESHOLD,
     ChangedStage,
     ClassicalSearch,
@@ -22,8 +22,8 @@ from lightgesture.benchmarks.ablation_stages import (
     tree_scores,
     without_pairs,
 )
-from lightgesture.benchmarks.finding_suite import FindingAnswer
-from lightgesture.benchmarks.regions import Run, make_answer
+from lightgesture.benchmarks.finding.clips import FindingAnswer
+from lightgesture.benchmarks.finding.regions import Run, make_answer
 from lightgesture.benchmarks.scorer import Reading, score_frame
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.classical import ClassicalSelector
@@ -89,10 +89,10 @@ def test_one_threshold_proposes_less(colour):
 
 
 def test_two_hands_go_together_as_well_as_the_worse(parts):
-    together = lower_of_both(HANDS, CLASSICAL)
+    together = lower_of_both(HANDS)
     assert together == pytest.approx(np.array([[0, 0.4, 0], [0.4, 0, 0.4], [0, 0.4, 0]], np.float32))
-    assert not lower_of_both(HANDS, CLASSICAL, least=0.5).any()
-    assert lower_of_both((), CLASSICAL).shape == (0, 0)
+    assert not lower_of_both(HANDS, least=0.5).any()
+    assert lower_of_both(()).shape == (0, 0)
 
 
 def test_without_pairs_a_partner_helps_nobody():

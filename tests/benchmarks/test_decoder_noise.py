@@ -1,40 +1,38 @@
 """The simulated misreadings behind the table of the dwell rules."""
 
 import random
-from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
-from lightgesture.benchmarks.decoder_latency import (
+from lightgesture.benchmarks.decoder.latency import (
     ACCEPTING,
     arguments,
     measure,
     our_step,
     recorded,
 )
-from lightgesture.benchmarks.decoder_noise import wrong_bound
-from lightgesture.benchmarks.decoder_peers import edges, transitions_step
-from lightgesture.benchmarks.decoder_signing import (
+from lightgesture.benchmarks.decoder.noise import wrong_bound
+from lightgesture.benchmarks.decoder.peers import edges, transitions_step
+from lightgesture.benchmarks.decoder.signing import (
     HIDDEN_RULES,
     RULES,
     SENTENCES,
+    Absence,
     Hand,
-    NoiseSettings,
     Outcome,
     sign,
 )
 from lightgesture.fsm import load_grammar
 
 GRAMMAR = load_grammar()
-SETTINGS = NoiseSettings()
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.name)
 def test_without_misreadings_every_sentence_is_read(rule):
     outcome = Outcome()
     for sentence in SENTENCES[::3]:
-        sign(sentence, rule, GRAMMAR, 0.0, 1.0, SETTINGS, random.Random(sentence), outcome)
+        sign(sentence, rule, GRAMMAR, 0.0, 1.0, random.Random(sentence), outcome)
     assert (outcome.signed, outcome.right, outcome.wrong) == (17, 17, 0)
     assert set(map(round, outcome.delays, [1] * 999)) <= {0.3, 0.4, 0.5}
 
@@ -62,7 +60,7 @@ def test_lost_signs_are_what_the_rule_is_for():
         outcome = Outcome()
         for turn in range(60):
             rng = random.Random(turn)
-            sign("STOP HOVER 35 GO", rule, GRAMMAR, 0.06, 3.0, SETTINGS, rng, outcome)
+            sign("STOP HOVER 35 GO", rule, GRAMMAR, 0.06, 3.0, rng, outcome)
         found[rule.name] = outcome
     assert found["frames, 15, signs may get lost"].wrong > 0
     assert found["frames, 15"].wrong == 0
@@ -71,10 +69,10 @@ def test_lost_signs_are_what_the_rule_is_for():
 def test_hidden_signs_are_dropped_where_they_count_and_pauses_too():
     found = {}
     for rule in HIDDEN_RULES[:2]:
-        for what in (replace(SETTINGS, hidden=0.3), replace(SETTINGS, pauses=0.5)):
+        for what in (Absence(hidden=0.3), Absence(pauses=0.5)):
             outcome = Outcome()
             for turn in range(24):
-                sign("STOP HOVER 5 GO", rule, GRAMMAR, 0.0, 1.0, what, random.Random(turn), outcome)
+                sign("STOP HOVER 5 GO", rule, GRAMMAR, 0.0, 1.0, random.Random(turn), outcome, what)
             found[rule.count_hidden, what.hidden] = outcome
     assert found[False, 0.3].wrong > 0
     assert found[True, 0.3].wrong == 0
@@ -84,14 +82,13 @@ def test_hidden_signs_are_dropped_where_they_count_and_pauses_too():
 
 def test_the_bound_grows_with_share_and_burst():
     bounds = [
-        wrong_bound(share, burst, 6.0, SETTINGS)
-        for share, burst in ((0.01, 1.0), (0.01, 4.0), (0.1, 4.0), (0.1, 10.0))
+        wrong_bound(share, burst, 6.0) for share, burst in ((0.01, 1.0), (0.01, 4.0), (0.1, 4.0), (0.1, 10.0))
     ]
     assert bounds == sorted(bounds)
     assert bounds[0] == 0.0
     # 6 words of 35.5 frames, a hundredth in bursts of four that last fifteen frames with probability 0.75 ** 14
     assert bounds[1] == pytest.approx(6 * 35.5 * 0.01 / 4 * 0.75**14)
-    assert wrong_bound(0.9, 50.0, 60.0, replace(SETTINGS)) == 1.0
+    assert wrong_bound(0.9, 50.0, 60.0) == 1.0
 
 
 def test_recorded_frames_make_the_words_where_they_say():

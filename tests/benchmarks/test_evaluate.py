@@ -11,9 +11,13 @@ import numpy as np
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import ablation, accuracy, finding_report, reading_cost, reading_report
+from lightgesture.benchmarks import accuracy
 from lightgesture.benchmarks.commands import evaluate
 from lightgesture.benchmarks.contact_sheet import MAX_TILES, choose_evenly, save_sheet
+from lightgesture.benchmarks.finding import ablation
+from lightgesture.benchmarks.finding import report as finding_report
+from lightgesture.benchmarks.reading import cost as reading_cost
+from lightgesture.benchmarks.reading import report as reading_report
 from lightgesture.errors import InputError, UsageError
 
 
@@ -38,7 +42,7 @@ def command(monkeypatch, data, fake_classifier, fake_method):
     monkeypatch.setattr(accuracy, "product", make_pipeline)
     monkeypatch.setattr(finding_report, "selector_method", lambda name: copy_named(fake_method, name))
     monkeypatch.setattr(reading_report, "selector_method", lambda name: copy_named(fake_method, name))
-    monkeypatch.setattr(reading_cost, "added_memory", lambda name, settings: 7.5)
+    monkeypatch.setattr(reading_cost, "added_memory", lambda name: 7.5)
     parser = argparse.ArgumentParser()
     evaluate.add_arguments(parser)
 

@@ -7,12 +7,18 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import finding
-from lightgesture.benchmarks.finding import NoReader, Stages, run_left_out, selector_method, variant
-from lightgesture.benchmarks.finding_tables import finding_tables, found_table
-from lightgesture.benchmarks.regions import Run, make_answer, run_methods, run_single
+from lightgesture.benchmarks.finding import pipelines as finding
+from lightgesture.benchmarks.finding.pipelines import (
+    NoReader,
+    Stages,
+    run_left_out,
+    selector_method,
+    shared_parts,
+    variant,
+)
+from lightgesture.benchmarks.finding.regions import Run, make_answer, run_methods, run_single
+from lightgesture.benchmarks.finding.tables import finding_tables, found_table
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.shared_parts import shared_parts
 from lightgesture.features.find.selector import RegionStage
 from lightgesture.features.find.selector_file import (
     BUNDLED,
@@ -20,12 +26,12 @@ from lightgesture.features.find.selector_file import (
     SelectorError,
     load_classical,
     load_learned,
-    save_selector,
 )
-from lightgesture.features.track.tracker import TrackStage
-from lightgesture.features.types import Candidates
-from lightgesture.hands.reading import ReadingStage, Sighting
+from lightgesture.features.track.tracker import Tracker
+from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.hands import ReadingStage
 from lightgesture.training.datasets import Label, Sample, read_frames, read_negatives
+from lightgesture.training.model_files import write_selector
 
 
 def show_nothing(samples, _heading):
@@ -47,8 +53,11 @@ def _scene():
 def test_the_first_extent_is_kept_and_nothing_is_read():
     stage = ReadingStage(NoReader())
     boxes = ((5, 6, 30, 40), (0, 0, 60, 80))
-    (hand,) = stage.process(np.zeros((90, 90, 3), np.uint8), [Sighting("left", boxes, 3)])
-    assert (hand.box, hand.token, hand.side, hand.track) == (boxes[0], None, "left", 3)
+    (hand,) = stage.process(
+        np.zeros((90, 90, 3), np.uint8),
+        [HandRegion(boxes[0], np.zeros((0, 2), np.int32), "left", 0.9, boxes[1:])],
+    )
+    assert (hand.box, hand.token, hand.side, hand.track) == (boxes[0], None, "left", None)
 
 
 def test_other_stages_take_the_place_of_the_products(scene):
@@ -76,7 +85,7 @@ def test_every_stream_has_tracks_of_its_own():
     made = []
 
     def tracks():
-        made.append(TrackStage())
+        made.append(Tracker())
         return made[-1]
 
     method = variant("tracks", Stages(tracks=tracks))
@@ -158,7 +167,7 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     file = tmp_path / "fold.npz"
     parts = load_learned()
     own = replace(parts, **{name: altered(getattr(parts, name)) for name in ("places", "pairs")})
-    save_selector(file, Selector(load_classical(), own))
+    write_selector(Selector(load_classical(), own), file)
     card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")

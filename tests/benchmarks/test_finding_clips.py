@@ -6,26 +6,31 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import finding_clips
-from lightgesture.benchmarks.difficulties import (
+from lightgesture.benchmarks.finding import clips as finding_clips
+from lightgesture.benchmarks.finding.clips import (
+    TILE_STEP,
+    clip_tables,
+    evaluate_clips,
+    find_in_clips,
+    missed_sheets,
+)
+from lightgesture.benchmarks.finding.difficulties import (
     DIFFICULTIES,
     GLARE,
     GLOVES,
     SENTENCES,
     SHOWN,
+    STRENGTH,
     Excerpt,
     ExcerptTake,
     Glare,
-    GlareSettings,
     difficulty_takes,
     profile_take,
 )
-from lightgesture.benchmarks.finding_clips import evaluate_clips
-from lightgesture.benchmarks.finding_suite import TILE_STEP, clip_tables, find_in_clips, missed_sheets
 from lightgesture.benchmarks.methods import Decoded
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_cache import fetch_clip
-from lightgesture.benchmarks.suite_scenarios import ALONE, Scenario, scene_spec
+from lightgesture.benchmarks.suite.cache import fetch_clip
+from lightgesture.benchmarks.suite.scenarios import ALONE, Scenario, scene_spec
 from lightgesture.synth.scene import Scene
 
 
@@ -111,11 +116,11 @@ def test_a_profile_is_learnt_from_other_frames_of_the_same_scene():
 
 
 def test_glare_only_adds_light_and_moves():
-    glare = Glare((80, 60), np.random.default_rng(1), GlareSettings())
+    glare = Glare((80, 60), np.random.default_rng(1))
     picture = np.full((60, 80, 3), 0.2, np.float32)
     lit = [glare.lay_over(picture, time_s) for time_s in (0.0, 0.4)]
     assert all((one >= picture).all() for one in lit)
-    assert lit[0].max() <= 0.2 + GlareSettings().strength
+    assert lit[0].max() <= 0.2 + STRENGTH
     assert lit[0].max() > 0.5
     assert not np.array_equal(*lit)
     upper, lower = lit[0][:20].mean(), lit[0][40:].mean()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lightgesture.actions.decode import SAMPLE
-from lightgesture.benchmarks import finding_latency
-from lightgesture.benchmarks.finding_latency import (
+from lightgesture.benchmarks.finding import latency as finding_latency
+from lightgesture.benchmarks.finding.latency import (
     FOLLOWED,
     LITERT,
     PARTS,
@@ -23,13 +23,12 @@ from lightgesture.benchmarks.finding_latency import (
     time_finding,
     without_litert,
 )
-from lightgesture.benchmarks.timing import LatencySettings
+from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector_file import load_learned
-from lightgesture.features.net.reference import NumpyRunner
 from lightgesture.features.net.runner import Network
 from lightgesture.sources import open_source
 
-QUICK = LatencySettings(rounds=2, warm_up=3, starts=1)
+ROUNDS = 2
 
 
 @pytest.fixture(name="frames", scope="module")
@@ -40,7 +39,7 @@ def _frames():
 
 
 def test_searching_and_following_are_told_apart(frames):
-    rows = {row["stage"]: row for row in time_finding(frames, Engine("learned"), QUICK)}
+    rows = {row["stage"]: row for row in time_finding(frames, Engine("learned"), ROUNDS)}
     stages = [f"{part}, {word}" for word in ("searched", "followed") for part in PARTS]
     assert set(rows) == {SEARCHED, FOLLOWED, *stages}
     assert rows[SEARCHED]["share"] + rows[FOLLOWED]["share"] == pytest.approx(1.0)
@@ -50,7 +49,7 @@ def test_searching_and_following_are_told_apart(frames):
 
 
 def test_the_classical_choice_searches_every_frame(frames):
-    rows = time_finding(frames[:4], Engine("classical"), QUICK)
+    rows = time_finding(frames[:4], Engine("classical"), ROUNDS)
     assert [row["stage"] for row in rows] == [SEARCHED, *(f"{part}, searched" for part in PARTS)]
     assert {(row["selector"], row["nets"], row["share"]) for row in rows} == {("classical", "", 1.0)}
 
@@ -59,15 +58,15 @@ def test_without_the_run_time_the_nets_run_by_numpy():
     before = {name for name in sys.modules if name.startswith(LITERT)}
     network = load_learned().locator
     with without_litert():
-        assert isinstance(Network(network)._runner, NumpyRunner)
+        assert Network(network).backend == "numpy"
     assert {name for name in sys.modules if name.startswith(LITERT)} == before
     pytest.importorskip(LITERT)
-    assert not isinstance(Network(network)._runner, NumpyRunner)
+    assert Network(network).backend == "litert"
 
 
 def test_both_run_times_find_the_same(frames):
     pytest.importorskip(LITERT)
-    colour = finding_latency.TimedFinding(open_stage(Engine("learned")))._colour.process(frames[0])
+    colour = ColourStage().process(frames[0])
     found = [open_stage(Engine("learned", uses)).process(colour) for uses in (True, False)]
     first, second = ([region.box for region in one.regions] for one in found)
     assert len(first) >= 2
@@ -85,25 +84,25 @@ def test_what_is_not_installed_is_not_timed(monkeypatch):
 
 def test_a_row_for_each_clip_and_engine(monkeypatch, frames):
     monkeypatch.setattr(finding_latency, "engines", lambda: [Engine("learned", False), Engine("classical")])
-    table = finding_times({"a": frames[:2], "b": frames[:2]}, LatencySettings(rounds=1, warm_up=1))
+    table = finding_times({"a": frames[:2], "b": frames[:2]}, 1)
     names = [(row["clip"], row["selector"]) for row in table.to_dicts()]
     changes = [first for first, second in pairwise([*names, None]) if first != second]
     assert changes == [("a", "learned"), ("a", "classical"), ("b", "learned"), ("b", "classical")]
 
 
 def test_a_fresh_start_takes_time_and_memory():
-    seconds, peak = fresh_start(Engine("learned", uses_litert=False), QUICK)
+    seconds, peak = fresh_start(Engine("learned", uses_litert=False))
     assert 0.05 < seconds < 60.0
     assert peak is None or 20.0 < peak < 1000.0
 
 
 def test_starts_are_summed_up(monkeypatch):
-    answers = iter([(3.0, 10.0), (1.0, None), (2.0, 30.0)] * 3)
+    answers = iter([(3.0, 10.0), (1.0, None), (2.0, 30.0), (9.0, 20.0), (0.5, 20.0)] * 3)
     monkeypatch.setattr(finding_latency, "fresh_start", lambda *_: next(answers))
-    rows = fresh_starts(LatencySettings(starts=3)).to_dicts()
-    assert {(row["starts"], row["seconds"], row["peak_mb"]) for row in rows} == {(3, 2.0, 20.0)}
+    rows = fresh_starts().to_dicts()
+    assert {(row["starts"], row["seconds"], row["peak_mb"]) for row in rows} == {(5, 2.0, 20.0)}
 
 
 def test_a_start_that_fails_is_no_time():
     with pytest.raises(subprocess.CalledProcessError):
-        fresh_start(Engine("nothing"), QUICK)
+        fresh_start(Engine("nothing"))

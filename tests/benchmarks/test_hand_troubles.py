@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.hand_troubles import (
+from lightgesture.benchmarks.reading.troubles import (
     EDGES,
     cut_by_edge,
     half_covered,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.benchmarks.hands import (
+from lightgesture.benchmarks.reading.hands import (
     by_source_table,
     by_token_table,
     classify,

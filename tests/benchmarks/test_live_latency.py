@@ -5,14 +5,14 @@ import os
 import pytest
 
 from lightgesture.benchmarks import live_latency
-from lightgesture.benchmarks.live_latency import LiveLatencySettings, Run, memory_mib, table
+from lightgesture.benchmarks.live_latency import Run, memory_mib, table, take
 from lightgesture.benchmarks.mjpeg_server import main as serve
 from lightgesture.errors import ExitStatus
 
 
 def feed(run, *records, now_s=10.0, is_counted=True):
     for record in records:
-        live_latency._take(record, now_s, {0: 9.9, 1: 9.95, 2: 9.96}, run, is_counted)
+        take(record, now_s, {0: 9.9, 1: 9.95, 2: 9.96}, run, is_counted)
 
 
 def frame(index):
@@ -41,7 +41,7 @@ def test_the_warm_up_does_not_count():
 def test_the_bound_is_that_of_each_frame():
     run = Run(ages_ms=[50.0, 60.0, 90.0, 40.0], memory_mib=[100.0, 101.0], dropped=7)
     run.pairs_ms = [(50.0, 20.0), (60.0, 20.0), (90.0, 60.0), (40.0, 5.0)]
-    values = {row["what"]: row["value"] for row in table(run, LiveLatencySettings(fps=60.0)).rows}
+    values = {row["what"]: row["value"] for row in table(run, 60.0).rows}
     assert values["age within two frame times and processing, % of frames"] == 50.0
     assert (values["frames decoded"], values["frames passed over"]) == (4, 7)
     assert values["age, most ms"] == 90.0

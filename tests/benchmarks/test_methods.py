@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from lightgesture.benchmarks import methods
-from lightgesture.benchmarks.hand_bank import HandBank, hu_moments, largest_contour
 from lightgesture.benchmarks.methods import Decoded, PaperMethod, PipelineMethod, product
+from lightgesture.benchmarks.paper.bank import HandBank, hu_moments, largest_contour
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.fsm import Decoder, load_grammar
+from lightgesture.fsm import Decoder, Signs, load_grammar
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 
 
@@ -53,7 +53,7 @@ def test_held_pair_of_the_paper_chain_is_decoded(scene, bank):
     for index in range(6):
         stream.process(scene, index / 30)
     reference = Decoder(load_grammar(), hold=3)
-    events = [event for index in range(6) for event in reference.step("5", "5", index / 30)]
+    events = [event for index in range(6) for event in reference.step(Signs.of_tokens("5", "5"), index / 30)]
     expected = methods.decoded([*events, *reference.finish()])
     assert stream.finish() == expected
     assert expected.instructions == ()
@@ -76,7 +76,7 @@ class FakePipeline:
         return FrameRecord(source=None, frame=None, time_s=None, hands=(hand,))
 
     def process(self, image, time_s, index=None):
-        return [self.recognize(image), *self._decoder.step(*self._script[index], time_s)]
+        return [self.recognize(image), *self._decoder.step(Signs.of_tokens(*self._script[index]), time_s)]
 
     def finish(self):
         summary = SummaryRecord(

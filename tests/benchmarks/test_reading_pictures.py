@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.hands import classify
-from lightgesture.benchmarks.reading_pictures import (
+from lightgesture.benchmarks.reading.hands import classify
+from lightgesture.benchmarks.reading.pictures import (
     CELL,
     MARGIN,
     PLOT,

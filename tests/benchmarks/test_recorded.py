@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from lightgesture.benchmarks.mediapipe_hands import describe
-from lightgesture.benchmarks.recorded import read_recorded, recorded_runs
+from lightgesture.benchmarks.finding.mediapipe_hands import describe
+from lightgesture.benchmarks.finding.recorded import read_recorded, recorded_runs
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.errors import InputError
 from lightgesture.training.datasets import read_frames

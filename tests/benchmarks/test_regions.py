@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from lightgesture.benchmarks.region_tables import (
+from lightgesture.benchmarks.finding.region_tables import (
     instructions_table,
     negatives_table,
     regions_table,
     tokens_table,
 )
-from lightgesture.benchmarks.regions import run_methods
+from lightgesture.benchmarks.finding.regions import run_methods
 from lightgesture.training.datasets import read_frames, read_negatives
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks.hands import HandAnswer
-from lightgesture.benchmarks.reliability import calibration_error, reliability_bins, reliability_table
+from lightgesture.benchmarks.reading.hands import HandAnswer
+from lightgesture.benchmarks.reading.reliability import calibration_error, reliability_bins, reliability_table
 from lightgesture.training.datasets import Label, Sample
 
 CLASSES = ("2", "5", "none")

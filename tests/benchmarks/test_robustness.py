@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import robustness
-from lightgesture.benchmarks.robustness import box_table, find_hands, found_table, random_table, trouble_table
+from lightgesture.benchmarks.reading import robustness
+from lightgesture.benchmarks.reading.robustness import (
+    box_table,
+    find_hands,
+    found_table,
+    random_table,
+    trouble_table,
+)
 from lightgesture.training.datasets import read_frames, read_hands, read_negatives
 
 CLASSES = ("2", "5", "none")

@@ -8,15 +8,18 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.benchmarks import reading_baselines, reading_study, study_kinds, study_rows
-from lightgesture.benchmarks.study_data import (
+from lightgesture.benchmarks.studies import baselines as reading_baselines
+from lightgesture.benchmarks.studies import kinds as study_kinds
+from lightgesture.benchmarks.studies import reading as reading_study
+from lightgesture.benchmarks.studies import rows as study_rows
+from lightgesture.benchmarks.studies.data import (
     held_out_subjects,
     open_study,
     rows_of_sources,
     training_of,
 )
-from lightgesture.benchmarks.study_pools import EVERYTHING, NOTHING, POOLS
-from lightgesture.benchmarks.study_rows import mean_and_worst
+from lightgesture.benchmarks.studies.kinds import EVERYTHING, NOTHING, POOLS
+from lightgesture.benchmarks.studies.rows import mean_and_worst
 from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.training.datasets import fold_of
@@ -182,7 +185,7 @@ def test_each_source_is_held_out_in_one_fold(study_command):
 
 
 def test_the_svm_alone_answers_for_hands_that_it_never_saw(study_command):
-    trained, rows = study_command("subjects", "--svm-alone", "--svm-steps", "200")
+    trained, rows = study_command("subjects", "--svm-alone", "--svm-steps", "60", "--svm-centres", "40")
     assert not trained
     (row,) = rows
     assert (row["row"], row["held_hands"], row["sources"]) == ("svm", 12, 6)
@@ -194,13 +197,15 @@ def test_the_svm_alone_needs_no_torch_and_its_settings_are_told(study_command, m
         raise UsageError("no torch here")
 
     monkeypatch.setattr(checkpoints, "need_torch", refuse)
-    study_command("subjects", "--svm-alone", "--svm-steps", "20", "--svm-centres", "30")
+    study_command("subjects", "--svm-alone", "--svm-steps", "5", "--svm-centres", "20")
     told = json.loads((tmp_path / "rows.json").read_text(encoding="utf-8"))["settings"]
-    assert told["svm"] == {"centres": 30, "steps": 20}
+    assert told["svm"] == {"centres": 20, "steps": 5}
 
 
 def test_the_svm_has_folds_of_its_own(study_command):
-    trained, rows = study_command("folds", "--svm", "--svm-steps", "20")
+    trained, rows = study_command(
+        "folds", "--svm", "--svm-steps", "5", "--svm-centres", "20", "--fold", "0", "--fold", "1"
+    )
     assert [row["row"] for row in rows if row["row"].startswith("svm fold")] == [
         name.replace("cnn", "svm") for name, *_ in trained
     ]
@@ -290,7 +295,7 @@ def test_a_net_is_trained_and_scored(drawn, tmp_path, capsys):
 
 def test_contours_become_a_model_file(drawn, tmp_path, capsys):
     out = tmp_path / "contours.npz"
-    pool = ("--pool", str(tmp_path / "pool"), "--copies", "2", "--rendered", "0", "--steps", "200")
+    pool = ("--pool", str(tmp_path / "pool"), "--copies", "2", "--rendered", "0", "--steps", "60")
     arguments = ["--data", str(drawn), "--out", str(out), "--centres", "40"]
     assert reading_baselines.main(["contours", *arguments, *pool, "--json", str(tmp_path / "rows.json")]) == 0
     classifier = load_classifier(out)

@@ -7,15 +7,17 @@ from dataclasses import replace
 import pytest
 
 from lightgesture import models
-from lightgesture.benchmarks import accuracy, suite
+from lightgesture.benchmarks import accuracy
 from lightgesture.benchmarks.commands import evaluate
 from lightgesture.benchmarks.methods import decoded
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.benchmarks.suite_cache import fetch_clip
-from lightgesture.benchmarks.suite_scenarios import LAND, NEGATIVE, REAL, SIZE, WATER, Scenario
-from lightgesture.benchmarks.suite_tables import all_tables
+from lightgesture.benchmarks.suite import run as suite
+from lightgesture.benchmarks.suite import takes as suite_takes
+from lightgesture.benchmarks.suite.cache import fetch_clip
+from lightgesture.benchmarks.suite.scenarios import LAND, NEGATIVE, REAL, SIZE, WATER, Scenario
+from lightgesture.benchmarks.suite.tables import all_tables
 from lightgesture.errors import UsageError
-from lightgesture.fsm import Decoder, load_grammar
+from lightgesture.fsm import Decoder, Signs, load_grammar
 
 
 class Oracle:
@@ -33,7 +35,7 @@ class Oracle:
         assert image.shape == (48, 64, 3)
         labels = () if self._is_blind else self.labels[self._index]
         tokens = {label.side: label.token for label in labels}
-        self._events += self._decoder.step(tokens.get("left"), tokens.get("right"), time_s)
+        self._events += self._decoder.step(Signs.of_tokens(tokens.get("left"), tokens.get("right")), time_s)
         self._index += 1
         return [Reading(label.box, label.side, label.token, 1 + (label.side == "left")) for label in labels]
 
@@ -101,20 +103,22 @@ def test_tables_sum_up_by_suite_and_difficulty_and_list_the_failures(clip):
 
 
 def test_takes_are_chosen_by_part_clip_and_speed():
-    takes = [take for name in (WATER, LAND, NEGATIVE) for take in suite.takes_of(name, None)]
-    assert len(suite.choose_takes(takes, (), False)) == 62
-    assert [take.scenario.name for take in suite.choose_takes(takes, ["water-03"], False)] == ["water-03"]
-    quick = [take.scenario.name for take in suite.choose_takes(takes, [LAND], True)]
+    takes = [take for name in (WATER, LAND, NEGATIVE) for take in suite_takes.takes_of(name, None)]
+    assert len(suite_takes.choose_takes(takes, (), False)) == 62
+    assert [take.scenario.name for take in suite_takes.choose_takes(takes, ["water-03"], False)] == [
+        "water-03"
+    ]
+    quick = [take.scenario.name for take in suite_takes.choose_takes(takes, [LAND], True)]
     assert quick == ["land-01", "land-06", "land-11", "land-16"]
 
 
 def test_real_hands_need_a_data_folder(data):
-    assert suite.takes_of(REAL, None) == []
-    assert suite.takes_of(REAL, data) == []
+    assert suite_takes.takes_of(REAL, None) == []
+    assert suite_takes.takes_of(REAL, data) == []
 
 
 def test_real_hands_are_held_by_the_divers_own_sides(real_data):
-    take = suite.takes_of(REAL, real_data)[0]
+    take = suite_takes.takes_of(REAL, real_data)[0]
     frames = take.frames()
     first = next(frames)
     assert first.image.shape == (SIZE[1], SIZE[0], 3)
@@ -127,7 +131,7 @@ def test_real_hands_are_held_by_the_divers_own_sides(real_data):
 @pytest.fixture(name="command")
 def _command(monkeypatch, tmp_path, clip, signed_take):
     """Runs `evaluate suite` with one drawn clip and a flawless reader."""
-    monkeypatch.setattr(suite, "takes_of", lambda name, _data: [signed_take] if name == WATER else [])
+    monkeypatch.setattr(suite_takes, "takes_of", lambda name, _data: [signed_take] if name == WATER else [])
     monkeypatch.setattr(models, "load_classifier", lambda _name: None)
     asked = []
 

@@ -6,10 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from lightgesture.benchmarks.suite_cache import (
+from lightgesture.benchmarks.suite.cache import (
     TRUTH,
     VIDEO,
-    CacheSettings,
     cache_folder,
     fetch_clip,
     source_digest,
@@ -83,8 +82,7 @@ def test_the_longest_unused_clips_go_first(folder, signed_take):
     size = sum(file.stat().st_size for file in places[0].iterdir())
     for age, place in zip((100, 300, 200), places, strict=True):
         os.utime(place, (1e9 - age, 1e9 - age))
-    settings = CacheSettings(max_bytes=int(3.5 * size))
-    kept = fetch_clip(replace(signed_take, recipe="new"), folder, settings=settings).video.parent
+    kept = fetch_clip(replace(signed_take, recipe="new"), folder, int(3.5 * size)).video.parent
     assert set(folder.iterdir()) == {kept, places[0], places[2]}
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.benchmarks.suite_scenarios import (
+from lightgesture.benchmarks.suite.scenarios import (
     LAND,
     NEGATIVE,
     REAL,
@@ -13,7 +13,7 @@ from lightgesture.benchmarks.suite_scenarios import (
     scenarios,
     scene_spec,
 )
-from lightgesture.fsm import Decoder, Instruction, load_grammar
+from lightgesture.fsm import Decoder, Instruction, Signs, load_grammar
 from lightgesture.synth.script import sentence_words, word_pairs
 
 
@@ -42,7 +42,7 @@ def test_signed_without_a_flaw_each_sentence_is_issued_as_it_stands(suite):
         decoder, events, clock = Decoder(grammar, hold=15), [], 0
         for pair, _ in word_pairs(grammar, sentence_words(scenario.sentences[0])):
             for shown in [pair] * 16 + [(None, None)] * 4:
-                events += decoder.step(shown[0], shown[1], clock / 30.0)
+                events += decoder.step(Signs.of_tokens(*shown), clock / 30.0)
                 clock += 1
         issued = [event.text for event in events if isinstance(event, Instruction)]
         assert issued == list(scenario.sentences), scenario.name

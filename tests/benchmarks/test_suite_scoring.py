@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lightgesture.benchmarks.scorer import Reading, Score
-from lightgesture.benchmarks.suite_scoring import (
+from lightgesture.benchmarks.suite.scoring import (
     SuiteScore,
     TimedWord,
     accept_delays,

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from lightgesture.features import find_hands
-from lightgesture.features.colour import ColourStage
+from lightgesture.features.colour import WORKING_PIXELS, ColourStage
 from lightgesture.features.find.proposals import propose
-from lightgesture.features.outline.curvature import curvature_points
-from lightgesture.features.outline.shape import convexity_defects, solidity
+from lightgesture.features.image import as_bgr8
+from lightgesture.features.outline.contours import contour_numbers
 from lightgesture.features.profile import ColourProfile
 
 SKIN, WATER = (110, 140, 200), (150, 120, 40)
@@ -58,7 +58,7 @@ BUSY = {
 @pytest.mark.parametrize("image", EMPTY.values(), ids=EMPTY.keys())
 def test_frames_of_nothing_hold_no_region_and_no_hand(image):
     for profile in (None, PROFILE):
-        colour = ColourStage(profile=profile).process(image)
+        colour = ColourStage(profile).process(as_bgr8(image))
         assert colour.picture.ndim == 3
         assert colour.skin.shape == colour.picture.shape[:2]
         assert colour.source_size == (image.shape[1], image.shape[0])
@@ -70,11 +70,11 @@ def test_frames_of_nothing_hold_no_region_and_no_hand(image):
 @pytest.mark.parametrize("profile", [None, PROFILE], ids=["default", "profile"])
 def test_frames_of_everything_take_bounded_time(image, profile):
     start = time.process_time()
-    proposals = propose(ColourStage(profile=profile).process(image))
+    proposals = propose(ColourStage(profile).process(as_bgr8(image)))
     for contour in proposals.contours:
-        assert 0.0 < solidity(contour) <= 1.0
-        assert np.isfinite(convexity_defects(contour).depth).all()
-        assert np.isfinite(curvature_points(contour).fingertips).all()
+        numbers = contour_numbers(contour)
+        assert 0.0 < numbers[1] <= 1.0
+        assert np.isfinite(numbers).all()
     assert time.process_time() - start < MOST_SECONDS
     assert len(proposals) <= 160
 
@@ -86,12 +86,8 @@ def test_frames_of_everything_hold_no_hand(image):
 
 @pytest.mark.parametrize(
     "image",
-    [
-        np.zeros((6000, 8000, 3), np.uint8),
-        np.zeros((6000, 8000, 3), np.uint16),
-        np.zeros((6000, 8000), np.uint8),
-    ],
-    ids=["8000x6000", "8000x6000 16-bit", "8000x6000 grey"],
+    [np.zeros((6000, 8000, 3), np.uint8), np.zeros((80_000, 600, 3), np.uint8)],
+    ids=["8000x6000", "600x80000"],
 )
 def test_huge_frames_take_bounded_time_and_memory(image):
     tracemalloc.start()
@@ -102,9 +98,9 @@ def test_huge_frames_take_bounded_time_and_memory(image):
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert regions == 0
-    assert colour.picture.shape[:2] == (120, 160)
+    assert colour.picture.shape[0] * colour.picture.shape[1] <= 1.05 * WORKING_PIXELS
     assert seconds < MOST_SECONDS
-    # Only what is looked at is converted: no second copy of the frame.
+    # Only what is looked at is copied.
     assert most < 20e6
 
 
@@ -114,18 +110,16 @@ def test_odd_kinds_of_a_frame_give_the_map_of_the_plain_one():
     expected = stage.process(plain)
     for other in (
         np.dstack([plain, np.zeros((480, 640), np.uint8)]),
+        plain.astype(np.uint16) * 257,
         np.asfortranarray(plain),
         plain[:, ::-1][:, ::-1],
     ):
-        found = stage.process(other)
+        found = stage.process(as_bgr8(other))
         np.testing.assert_array_equal(found.picture, expected.picture)
         np.testing.assert_array_equal(found.skin, expected.skin)
-    sixteen = stage.process(plain.astype(np.uint16) * 257)
-    # Averaging sixteen bits and rounding once differs by a level from averaging eight and rounding at each step.
-    assert np.abs(sixteen.picture.astype(int) - expected.picture).max() <= 1
 
 
 @pytest.mark.parametrize("image", [np.zeros((4, 4, 3)), np.zeros((0, 4, 3), np.uint8), np.zeros(4, np.uint8)])
 def test_what_is_no_frame_is_refused_in_one_line(image):
     with pytest.raises(ValueError, match=r"frame of .*convert it first"):
-        ColourStage().process(image)
+        find_hands(image)

@@ -6,9 +6,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.find.bank import OTHER, bank_distances, build_bank, hand_proximity, k_means
-from lightgesture.features.find.bank_file import bank_arrays, bank_from
-from lightgesture.features.find.descriptors import DescriptorSettings, describe_outlines, mirrored
+from lightgesture.features.find.bank import (
+    OTHER,
+    DescriptorSettings,
+    bank_arrays,
+    bank_distances,
+    bank_from,
+    build_bank,
+    describe_outlines,
+    hand_proximity,
+    k_means,
+    mirrored,
+)
 
 SETTINGS = DescriptorSettings()
 

@@ -10,11 +10,11 @@ from lightgesture.features.outline.contours import (
     contour_length,
     contour_numbers,
     contour_vectors,
+    defect_depths,
     outline,
     radial_signature,
     segment,
 )
-from lightgesture.features.outline.shape import convexity_defects
 
 WIDE = ContourSettings(size=256)
 
@@ -99,7 +99,7 @@ def test_an_empty_mask_has_no_outline() -> None:
 def test_gaps_between_fingers_are_deep_defects(fingers: int) -> None:
     contour = outline(drawn_hand(fingers))
     assert contour is not None
-    depths = convexity_defects(contour).depth / 256
+    depths = defect_depths(contour) / 256
     between = depths[depths > 0.2]
     assert len(between) == fingers - 1
 

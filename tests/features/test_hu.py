@@ -3,7 +3,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lightgesture.features.outline.hu import SMALLEST, hu_moments, log_signed
+from lightgesture.features.outline.contours import SMALLEST, hu_moments, log_signed
 
 SHAPE = np.array([[0, 0], [400, 0], [400, 120], [150, 160], [140, 500], [0, 520]], np.float64)
 """An outline without any symmetry, large enough that whole pixels hardly matter."""

@@ -1,14 +1,27 @@
 """Integer networks: both run-times agree to a step, files come back whole, what does not fit is refused."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.net.file import network_arrays, network_from
-from lightgesture.features.net.network import IntegerNetwork, Quantisation, Weights
-from lightgesture.features.net.nodes import WEIGHTED, NetworkError, Node, infer_shapes, weight_shape
-from lightgesture.features.net.runner import Network
+from lightgesture.features.net.file import check_network, network_from
+from lightgesture.features.net.network import (
+    WEIGHTED,
+    IntegerNetwork,
+    LiteRtFile,
+    NetworkError,
+    Node,
+    Quantisation,
+    Weights,
+    infer_shapes,
+    weight_shape,
+)
+from lightgesture.features.net.runner import MOST_PLANNED, LiteRtRunner, Network
+from lightgesture.training.nets.flatbuffer import network_arrays, with_litert
 
 NODES = (
     Node("stem", "conv", ("x",), 8, 3, 2, "relu6"),
@@ -47,8 +60,8 @@ def random_network(seed, nodes=NODES, outputs=("maps", "end"), shape=SHAPE):
                 levels, rng.integers(-3000, 3000, channels).astype(np.int32), factors
             )
     network = IntegerNetwork({"x": shape}, tuple(nodes), tuple(outputs), weights, scales)
-    network.check()
-    return network
+    check_network(network)
+    return with_litert(network)
 
 
 def _input(seed, count, shape=SHAPE):
@@ -103,8 +116,6 @@ def test_a_net_without_dense_layers_takes_pictures_of_any_size():
 
 def test_any_number_of_pictures_goes_through_one_plan_to_what_each_gives_alone():
     pytest.importorskip("ai_edge_litert")
-    from lightgesture.features.net.litert import LiteRtRunner
-
     runner = LiteRtRunner(random_network(3))
     pictures = _input(4, 5)["x"]
     together = runner.run({"x": pictures})
@@ -112,17 +123,15 @@ def test_any_number_of_pictures_goes_through_one_plan_to_what_each_gives_alone()
         alone = runner.run({"x": pictures[place : place + 1]})
         for name in together:
             np.testing.assert_array_equal(together[name][place : place + 1], alone[name])
-    assert len(runner._planned) == 1
+    assert runner.planned == 1
 
 
 def test_pictures_of_many_sizes_keep_a_bounded_number_of_plans():
     pytest.importorskip("ai_edge_litert")
-    from lightgesture.features.net.litert import MOST_PLANNED, LiteRtRunner
-
     runner = LiteRtRunner(random_network(5, NODES[:8], ("maps",)))
     for side in range(2, 2 + MOST_PLANNED + 3):
         runner.run(_input(0, 1, (4 * side, 8, 3)))
-    assert len(runner._planned) == MOST_PLANNED
+    assert runner.planned == MOST_PLANNED
 
 
 def test_a_network_survives_its_arrays():
@@ -157,22 +166,76 @@ def test_a_node_that_does_not_fit_is_refused_in_one_line(node, reason):
     assert "\n" not in str(caught.value)
 
 
+def _layout(network, change):
+    """The members of a network whose layout was changed."""
+    arrays = network_arrays("n", network)
+    layout = json.loads(arrays["n_layout"].tobytes())
+    change(layout)
+    return {**arrays, "n_layout": np.frombuffer(json.dumps(layout).encode(), np.uint8)}
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda layout: layout.clear(), "sha256"),
+        (lambda layout: layout.update(sha256="0" * 64), "belongs to another"),
+        (lambda layout: layout["places"].pop("stem/weights"), "stem/weights"),
+        (lambda layout: layout["places"].update({"stem/weights": 10**9}), "no valid network"),
+        (lambda layout: layout["places"].update({"stem/weights": -1}), "no valid network"),
+        (lambda layout: layout["places"].update({"stem/weights": "x"}), "no valid network"),
+        (lambda layout: layout["places"].update({"up/size": 0}), "does not stand where"),
+        (lambda layout: layout["places"].update({"stem/scales": layout["places"]["stem/weights"]}), "stem"),
+        (lambda layout: layout["nodes"][0].update(channels=9), "do not fit add"),
+        (lambda layout: layout["nodes"][0].update(op="pickle"), "unknown operation"),
+        (lambda layout: layout["quantisation"].pop("x"), "x"),
+        (lambda layout: layout["quantisation"].update(x=[0.0, 3]), "x: scale 0.0"),
+        (lambda layout: layout.update(nodes=3), "no valid network"),
+    ],
+)
+def test_a_layout_that_is_none_is_refused_in_one_line(change, reason):
+    with pytest.raises(NetworkError, match=reason) as caught:
+        network_from(_layout(random_network(0), change), "n")
+    assert "\n" not in str(caught.value)
+
+
 @pytest.mark.parametrize(
     ("name", "array"),
     [
-        ("n_stem_weights", np.zeros((1, 1), np.int8)),
-        ("n_stem_weights", np.zeros((8, 3, 3, 3), np.float64)),
-        ("n_stem_scales", np.full(8, np.nan, np.float32)),
-        ("n_stem_scales", np.zeros(8, np.float32)),
         ("n_layout", np.frombuffer(b'{"nodes": 3}', np.uint8)),
+        ("n_layout", np.frombuffer(b"[" * 100_000, np.uint8)),
         ("n_layout", np.zeros(10**6, np.uint8)),
+        ("n_tflite", np.zeros(3, np.float32)),
+        ("n_tflite", np.zeros(30, np.uint8)),
     ],
 )
-def test_arrays_that_are_no_network_are_refused_in_one_line(name, array):
+def test_members_that_are_no_network_are_refused_in_one_line(name, array):
     arrays = {**network_arrays("n", random_network(0)), name: array}
     with pytest.raises(NetworkError) as caught:
         network_from(arrays, "n")
     assert "\n" not in str(caught.value)
+
+
+def test_a_scale_that_is_no_number_is_refused():
+    network = random_network(0)
+    spoilt = replace(network.weights["stem"], scales=np.full(8, np.nan, np.float32))
+    with pytest.raises(NetworkError, match="stem"):
+        check_network(replace(network, weights={**network.weights, "stem": spoilt}))
+
+
+def test_a_file_that_lite_rt_does_not_take_is_refused_in_one_line():
+    pytest.importorskip("ai_edge_litert")
+    network, other = random_network(0), random_network(0, NODES[:8], ("maps",))
+    for file in (LiteRtFile(bytes(1000), {}), LiteRtFile(network.litert.content[:2000], {}), other.litert):
+        with pytest.raises(NetworkError, match="does not take") as caught:
+            Network(replace(network, litert=file), "litert")
+        assert "\n" not in str(caught.value)
+
+
+def test_a_network_without_a_file_runs_on_the_reference_alone():
+    network = replace(random_network(2), litert=None)
+    assert Network(network).run(_input(0, 1))["end"].size == 5
+    with pytest.raises(NetworkError, match=r"no \.tflite"):
+        Network(network, "litert")
 
 
 def test_without_lite_rt_the_reference_runs_and_a_wish_for_it_is_told(monkeypatch):

@@ -14,7 +14,7 @@ from lightgesture.features.profile import (
     load_profile,
     save_profile,
 )
-from lightgesture.features.profile_learning import LearningSettings, learn_profile, proposed_share
+from lightgesture.features.profile_learning import learn_profile, proposed_share
 from lightgesture.synth.scene import Scene
 from lightgesture.synth.spec import DiverSpec, SceneSpec
 
@@ -166,6 +166,6 @@ def test_gloves_of_the_synthetic_diver_are_found_with_their_profile(glove):
     frames = [scene.frame(round(scene.frame_count * share)) for share in (0.15, 0.35, 0.55, 0.8)]
     images = [frame.image for frame in frames]
     boxes = [[hand.box for hand in frame.record.hands if hand.reason != "partial"] for frame in frames]
-    profile = learn_profile(images[:2], boxes[:2], "glove", "first half", LearningSettings())
+    profile = learn_profile(images[:2], boxes[:2], "glove", "first half")
     assert proposed_share(images[2:], boxes[2:], profile) >= 0.75
     assert proposed_share(images[2:], boxes[2:]) < 0.5

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from lightgesture.features import find_hands
-from lightgesture.features.colour import ColourSettings, ColourStage, reduce_picture
+from lightgesture.features.colour import ColourStage, reduce_picture
 from lightgesture.features.find.cells import describe
-from lightgesture.features.find.proposals import propose
-from lightgesture.features.find.selector import RegionStage, SelectorSettings, choose
-from lightgesture.features.geometry import mirror_box, pairwise_iou, scale_box
-from lightgesture.features.outline.wrist import WristSettings, cut_forearm, palm_circle
+from lightgesture.features.find.proposals import cut_forearm, palm_circle, propose
+from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.find.settings import SelectorSettings
+from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Candidates, HandRegion
 
 SKIN, WATER = (110, 140, 200), (150, 120, 40)
@@ -79,10 +79,10 @@ def test_the_forearm_is_cut_off_below_the_palm():
     cv2.rectangle(mask, (30, 35), (50, 110), 255, cv2.FILLED)
     contour = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0][0].reshape(-1, 2)
     box = cv2.boundingRect(contour)
-    hand = cut_forearm(contour.astype(np.int32), box, WristSettings())
+    hand = cut_forearm(contour.astype(np.int32), box)
     assert hand is not None
     assert hand[:, 1].max() == pytest.approx(35 + 1.1 * 22, abs=3)
-    assert cut_forearm(hand, cv2.boundingRect(hand), WristSettings()) is None
+    assert cut_forearm(hand, cv2.boundingRect(hand)) is None
 
 
 def test_the_palm_circle_is_the_largest_inside():
@@ -92,12 +92,6 @@ def test_the_palm_circle_is_the_largest_inside():
     assert abs(x - 30) <= 1
     assert abs(y - 25) <= 1
     assert radius == pytest.approx(18, abs=1.5)
-
-
-def test_boxes_stay_inside_the_source():
-    assert scale_box((150, 110, 20, 20), (4.0, 4.0), (640, 480)) == (600, 440, 40, 40)
-    assert scale_box((-5, -5, 4, 4), (4.0, 4.0), (640, 480)) == (0, 0, 1, 1)
-    assert mirror_box((10, 5, 30, 40), 640) == (600, 5, 30, 40)
 
 
 def _candidates(scores, together):
@@ -124,14 +118,9 @@ def test_nothing_is_chosen_below_the_thresholds():
     assert choose(_candidates([0.4, 0.3], [[0, 0.2], [0.2, 0]]), settings) == []
 
 
-def test_the_mask_of_a_region_fills_its_outline():
-    contour = np.array([[10, 20], [29, 20], [29, 49], [10, 49]], np.int32)
-    mask = HandRegion((10, 20, 20, 30), contour, None, 1.0).mask
-    assert mask.shape == (30, 20)
-    assert mask.all()
-
-
-def test_a_larger_working_picture_is_an_option():
-    colour = ColourStage(ColourSettings(working_pixels=320 * 240)).process(_picture_with_blob())
-    assert colour.picture.shape[:2] == (240, 320)
-    assert colour.scale == (2.0, 2.0)
+def test_the_working_picture_and_the_one_before_have_the_same_shape():
+    colour = ColourStage().process(_picture_with_blob())
+    assert colour.picture.shape[:2] == (120, 160)
+    assert colour.detail.shape[:2] == (240, 320)
+    assert colour.scale == (4.0, 4.0)
+    assert colour.source_size == (640, 480)

@@ -1,17 +1,21 @@
 """Trees at run time against the library that fitted them; damaged files are refused in one line."""
 
+import json
+
 import numpy as np
 import pytest
 
+from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import (
     BUNDLED,
+    FORMAT,
     Selector,
     SelectorError,
     load_classical,
     load_learned,
-    save_selector,
 )
 from lightgesture.features.find.trees import Trees, evaluate
+from lightgesture.training.model_files import write_selector
 from lightgesture.training.regions.trees import export_trees
 
 
@@ -35,7 +39,7 @@ def _assert_equal_trees(first, second):
 def test_a_selector_survives_its_file(tmp_path):
     file = tmp_path / "copy.npz"
     bundled = Selector(load_classical(), load_learned())
-    save_selector(file, bundled)
+    write_selector(bundled, file)
     classical, learned = load_classical(file), load_learned(file)
     _assert_equal_trees(classical.regions, bundled.classical.regions)
     _assert_equal_trees(classical.pairs, bundled.classical.pairs)
@@ -50,10 +54,13 @@ def test_a_selector_survives_its_file(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
 
 
+def _header(**changes):
+    header = {"format": FORMAT, "kind": "selector", **changes}
+    return np.frombuffer(json.dumps(header).encode(), np.uint8)
+
+
 def _write(path, **changes):
-    with np.load(BUNDLED, allow_pickle=False) as stored:
-        arrays = {name: stored[name] for name in stored.files}
-    arrays.update(changes)
+    arrays = {"header": _header(), **read_archive(BUNDLED)[1], **changes}
     np.savez(path, **arrays)
     return path
 
@@ -61,13 +68,14 @@ def _write(path, **changes):
 @pytest.mark.parametrize(
     "changes",
     [
-        {"version": np.int32(99)},
+        {"header": _header(format=99)},
+        {"header": _header(kind="cnn")},
         {"regions_value": np.full((3, 3), np.nan, np.float32)},
         {"regions_left": np.full((2, 2), 7, np.int16)},
         {"region_pairs_depth": np.int64(10_000)},
         {"regions_base": np.array(["x"])},
     ],
-    ids=["version", "nan", "child", "depth", "text"],
+    ids=["version", "kind", "nan", "child", "depth", "text"],
 )
 def test_a_file_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
     path = _write(tmp_path / "bad.npz", **changes)
@@ -77,8 +85,7 @@ def test_a_file_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
 
 
 def test_nan_in_a_tree_of_the_right_shape_is_refused(tmp_path):
-    with np.load(BUNDLED, allow_pickle=False) as stored:
-        value = stored["regions_value"].copy()
+    value = read_archive(BUNDLED)[1]["regions_value"].copy()
     value[0, 0] = np.nan
     with pytest.raises(SelectorError, match="not finite"):
         load_classical(_write(tmp_path / "nan.npz", regions_value=value))
@@ -106,7 +113,7 @@ def test_a_missing_file_is_refused(tmp_path):
 
 def test_a_pickle_is_never_opened(tmp_path):
     path = tmp_path / "evil.npz"
-    np.savez(path, version=np.array([object()], dtype=object))
+    np.savez(path, header=_header(), regions_value=np.array([object()], dtype=object))
     with pytest.raises(SelectorError, match=r"evil\.npz"):
         load_classical(path)
 
@@ -123,14 +130,22 @@ def test_trees_that_point_outside_are_refused():
     [
         {"locator_layout": np.frombuffer(b"{}", np.uint8)},
         {"locator_layout": np.frombuffer(b"[" * 100_000, np.uint8)},
-        {"refiner_hand_weights": np.zeros((1, 3), np.int8)},
-        {"refiner_hand_biases": np.zeros(1, np.float32)},
+        {"refiner_tflite": np.zeros(3000, np.uint8)},
+        {"refiner_tflite": np.zeros(3000, np.float32)},
         {"places_feature": np.full((2, 2), 99, np.int16)},
     ],
-    ids=["empty layout", "deep layout", "shape", "type", "column"],
+    ids=["empty layout", "deep layout", "file", "type", "column"],
 )
 def test_a_net_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
     path = _write(tmp_path / "bad.npz", **changes)
     with pytest.raises(SelectorError, match=r"bad\.npz: .*lightgesture train regions") as caught:
         load_learned(path)
     assert "\n" not in str(caught.value)
+
+
+def test_a_file_of_an_older_version_is_told_so(tmp_path):
+    np.savez(tmp_path / "old.npz", version=np.int32(2), regions_value=np.zeros((1, 1), np.float32))
+    with pytest.raises(
+        SelectorError, match=r"old\.npz: has no header, so it is of an older version.*; make it again"
+    ):
+        load_classical(tmp_path / "old.npz")

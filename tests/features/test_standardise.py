@@ -1,10 +1,11 @@
 """Standardised colours: the quick way for small pictures gives what the histogram gives; casts drop out."""
 
+import cv2
 import numpy as np
 import pytest
 
 from lightgesture.features.net.network import Quantisation, dequantise, quantise
-from lightgesture.features.standardise import StandardSettings, channel_tables, patch_levels
+from lightgesture.features.standardise import LARGEST, channel_tables, luma_tables, patch_levels
 
 FINE = Quantisation(3.0 / 127.5, -1)
 
@@ -25,14 +26,13 @@ def test_many_small_pictures_as_one_by_one(dark, quantisation):
         assert (off > 0).mean() < 0.05
 
 
-@pytest.mark.parametrize("largest", [1.0, 3.0])
-def test_values_far_from_the_mean_are_clipped(largest):
+def test_values_far_from_the_mean_are_clipped():
     patches = np.full((1, 32, 32, 3), 90, np.uint8)
     patches[0, :2, :2] = 255
     patches[0, -2:, -2:] = 0
     coarse = Quantisation(0.05, 3)
-    values = dequantise(patch_levels(patches, coarse, StandardSettings(largest=largest)), coarse)
-    assert (values.min(), values.max()) == pytest.approx((-largest, largest), abs=0.03)
+    values = dequantise(patch_levels(patches, coarse), coarse)
+    assert (values.min(), values.max()) == pytest.approx((-LARGEST, LARGEST), abs=0.03)
 
 
 def test_a_flat_picture_is_all_zeros():
@@ -48,3 +48,16 @@ def test_a_gain_of_each_channel_drops_out():
     ours, same = (dequantise(patch_levels(one, FINE), FINE) for one in (bright, tinted))
     # The added evenness weighs more in the darker picture.
     assert np.abs(ours - same).max() < 0.25
+
+
+def test_lumas_of_many_pictures_are_those_of_each_alone():
+    pictures = np.random.default_rng(3).integers(0, 256, (4, 32, 32, 3)).astype(np.uint8)
+    pictures[1] //= 2
+    lumas, tables = luma_tables(pictures)
+    for picture, luma, table in zip(pictures, lumas, tables, strict=True):
+        alone, own = luma_tables(picture[None])
+        np.testing.assert_array_equal(luma, alone[0])
+        np.testing.assert_array_equal(table, own[0])
+        np.testing.assert_array_equal(luma, cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY))
+        seen = table[luma]
+        assert (seen.mean(), seen.std()) == pytest.approx((0.0, 1.0), abs=0.25)

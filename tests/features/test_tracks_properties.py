@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.track.evidence import blend, is_verified, observe
-from lightgesture.features.track.settings import TrackSettings
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.births import is_verified, observe
+from lightgesture.features.track.state import blend
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates, HandRegion
 
 PICTURE = (320, 240)
@@ -32,13 +32,13 @@ def candidates(draw):
 @settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(candidates(), TIME, st.booleans()), max_size=25))
 def test_at_most_one_track_a_side_and_no_number_comes_back(frames):
-    stage = TrackStage()
+    tracker = Tracker()
     ended: set[int] = set()
     present: set[int] = set()
     for shown, time_s, whole in frames:
-        assert len(stage.predictions(time_s)) <= 2
-        stage.explains(shown, time_s)
-        tracks = stage.process(shown, time_s, whole=whole)
+        assert len(tracker.predict(time_s)) <= 2
+        tracker.explains(shown)
+        tracks = tracker.update(shown, time_s, whole)
         assert len({track.side for track in tracks}) == len(tracks) <= 2
         numbers = {track.number for track in tracks}
         assert len(numbers) == len(tracks)
@@ -57,25 +57,41 @@ def test_at_most_one_track_a_side_and_no_number_comes_back(frames):
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.tuples(candidates(), st.floats(0.0, 0.4)), max_size=25))
 def test_the_same_frames_give_the_same_tracks(frames):
-    first, second = TrackStage(), TrackStage()
+    first, second = Tracker(), Tracker()
     time_s = 0.0
     for shown, step in frames:
         time_s += step
-        assert first.process(shown, time_s) == second.process(shown, time_s)
+        assert first.update(shown, time_s) == second.update(shown, time_s)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.lists(
+        st.tuples(candidates(), candidates(), TIME | st.floats(0.0, 0.4), st.integers(0, 4)), max_size=25
+    )
+)
+def test_what_was_asked_before_an_update_does_not_change_it(frames):
+    asked, plain = Tracker(), Tracker()
+    for shown, other, time_s, questions in frames:
+        if questions:
+            asked.predict(time_s if questions < 4 else time_s + 0.1)
+        if questions > 1:
+            asked.explains(other if questions == 3 else shown)
+        assert asked.update(shown, time_s) == plain.update(shown, time_s)
 
 
 @given(st.lists(st.floats(0.0, 0.1999), min_size=1, max_size=40), st.floats(0.001, 0.3))
 def test_scores_below_the_threshold_never_verify_a_pair(scores, step):
     known = None
     for index, score in enumerate(scores):
-        known = observe(known, score, index * step, step, 0.2, TrackSettings())
-        assert not is_verified(known, 0.2, TrackSettings())
+        known = observe(known, score, index * step, step, 0.2)
+        assert not is_verified(known, 0.2)
 
 
 @given(SCORE, SCORE, st.floats(0.0, 5.0), st.integers(1, 9))
 def test_a_mean_over_time_does_not_depend_on_how_the_time_is_divided(level, value, seconds, parts):
     blended = level
     for _ in range(parts):
-        blended = blend(blended, value, seconds / parts, 0.2)
-    assert math.isclose(blended, blend(level, value, seconds, 0.2), rel_tol=1e-9, abs_tol=1e-12)
+        blended = blend(blended, value, seconds / parts)
+    assert math.isclose(blended, blend(level, value, seconds), rel_tol=1e-9, abs_tol=1e-12)
     assert min(level, value) - 1e-9 <= blended <= max(level, value) + 1e-9

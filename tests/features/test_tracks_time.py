@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from lightgesture.features.track.births import PAIR_S, SINGLE_FRAMES, SINGLE_S
+from lightgesture.features.track.matching import CONSIDERED
 from lightgesture.features.track.settings import TrackSettings
-from lightgesture.features.track.tracker import TrackStage
+from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates
 
 RATES = (10, 30, 60)
@@ -23,9 +25,9 @@ def _dive(region, frame, time_s):
 
 def _watched(region, frame, rate, drop=0.0, seed=0):
     """(time, tracks) of each frame that is not dropped, 7 s long."""
-    rng, stage = np.random.default_rng(seed), TrackStage()
+    rng, tracker = np.random.default_rng(seed), Tracker()
     times = [index / rate for index in range(7 * rate) if index == 0 or rng.random() >= drop]
-    return [(time_s, stage.process(_dive(region, frame, time_s), time_s)) for time_s in times]
+    return [(time_s, tracker.update(_dive(region, frame, time_s), time_s)) for time_s in times]
 
 
 @pytest.mark.parametrize("drop", [0.0, 0.3])
@@ -36,22 +38,21 @@ def test_every_frame_rate_gives_the_same_lives(region, frame, rate, drop):
         (1, "right"),
         (2, "left"),
     }
-    settings, slack = TrackSettings(), 4.0 / rate if drop else 1.5 / rate
+    slack = 4.0 / rate if drop else 1.5 / rate
     born = min(time_s for time_s, tracks in watched if tracks)
-    assert born <= settings.pair_s + slack
+    assert born <= PAIR_S + slack
     last = max(time_s for time_s, tracks in watched if tracks)
-    assert last == pytest.approx(5.0 + settings.lost_s, abs=slack + 1.0 / rate)
+    assert last == pytest.approx(5.0 + TrackSettings().lost_s, abs=slack + 1.0 / rate)
     seen = [all(track.missed == 0 for track in tracks) for time_s, tracks in watched if 0.3 < time_s < 3.0]
     assert all(seen)
 
 
 @pytest.mark.parametrize("rate", RATES)
 def test_a_lone_hand_is_born_soon_at_every_rate(region, frame, rate):
-    stage = TrackStage()
+    tracker = Tracker()
     times = [index / rate for index in range(rate)]
-    born = next(time_s for time_s in times if stage.process(frame([region(140, 140, score=0.9)]), time_s))
-    settings = TrackSettings()
-    wanted = max(settings.single_s, (settings.single_frames - 1) / rate)
+    born = next(time_s for time_s in times if tracker.update(frame([region(140, 140, score=0.9)]), time_s))
+    wanted = max(SINGLE_S, (SINGLE_FRAMES - 1) / rate)
     assert wanted - 1e-9 <= born <= wanted + 1.0 / rate
 
 
@@ -67,32 +68,32 @@ def test_a_lone_hand_is_born_soon_at_every_rate(region, frame, rate):
     ],
 )
 def test_time_that_cannot_be_neither_raises_nor_keeps_hands_from_being_followed(region, frame, sides, times):
-    stage = TrackStage()
+    tracker = Tracker()
     for time_s in times:
-        stage.predictions(time_s)
-        tracks = stage.process(frame([region(160, 140), region(460, 140)], 0.8), time_s)
+        tracker.predict(time_s)
+        tracks = tracker.update(frame([region(160, 140), region(460, 140)], 0.8), time_s)
     assert sides(tracks) == {"right": 160, "left": 460}
 
 
 @pytest.mark.parametrize("time_s", [0.0, math.nan, -3.0])
 def test_tracks_end_although_time_stands_still(region, frame, time_s):
-    stage = TrackStage()
+    tracker = Tracker()
     for _ in range(30):
-        stage.process(frame([region(160, 140), region(460, 140)], 0.8), time_s)
+        tracker.update(frame([region(160, 140), region(460, 140)], 0.8), time_s)
     for _ in range(30):
-        tracks = stage.process(frame([]), time_s)
+        tracks = tracker.update(frame([]), time_s)
     assert tracks == ()
 
 
 def test_a_long_gap_in_time_starts_anew_with_new_numbers(region, frame):
-    stage = TrackStage()
+    tracker = Tracker()
     shown = frame([region(160, 140), region(460, 140)], 0.8)
-    assert [track.number for track in stage.process(shown, 0.0)] == [1, 2]
-    assert [track.number for track in stage.process(shown, 50.0)] == [3, 4]
+    assert [track.number for track in tracker.update(shown, 0.0)] == [1, 2]
+    assert [track.number for track in tracker.update(shown, 50.0)] == [3, 4]
 
 
 def test_regions_that_cannot_be_are_passed_over(region, frame, sides):
-    stage = TrackStage()
+    tracker = Tracker()
     odd = [
         region(-900, 140),
         region(5000, 5000),
@@ -103,16 +104,16 @@ def test_regions_that_cannot_be_are_passed_over(region, frame, sides):
     ]
     pairs = {(i, j): 0.9 for i in range(4) for j in range(i)} | {(4, 5): 0.8, (0, 4): math.nan}
     for index in range(10):
-        tracks = stage.process(frame(odd, pairs), index / 30)
+        tracks = tracker.update(frame(odd, pairs), index / 30)
     assert sides(tracks) == {"right": 160, "left": 460}
 
 
 def test_boxes_of_predictions_stay_inside_the_picture(region, frame):
-    stage = TrackStage()
+    tracker = Tracker()
     for index in range(12):
-        stage.process(frame([region(40 - 6 * index, 30), region(600 + 6 * index, 470)], 0.8), index / 30)
+        tracker.update(frame([region(40 - 6 * index, 30), region(600 + 6 * index, 470)], 0.8), index / 30)
     for index in range(12, 26):
-        for track in stage.process(frame([]), index / 30):
+        for track in tracker.update(frame([]), index / 30):
             x, y, width, height = track.box
             assert 0 <= x < x + width <= 640
             assert 0 <= y < y + height <= 480
@@ -125,10 +126,11 @@ def test_hundreds_of_regions_take_no_more_than_the_best_few(region):
         for index in range(400)
     )
     scores = rng.uniform(0.0, 1.0, (400, 400)).astype(np.float32)
-    few = TrackSettings().considered
-    all_of_them, best = TrackStage(), TrackStage()
+    all_of_them, best = Tracker(), Tracker()
     for index in range(20):
-        many = all_of_them.process(Candidates(regions, scores, (640, 480)), index / 30)
-        head = best.process(Candidates(regions[:few], scores[:few, :few], (640, 480)), index / 30)
+        many = all_of_them.update(Candidates(regions, scores, (640, 480)), index / 30)
+        head = best.update(
+            Candidates(regions[:CONSIDERED], scores[:CONSIDERED, :CONSIDERED], (640, 480)), index / 30
+        )
         assert many == head
         assert len(many) <= 2

@@ -6,9 +6,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.outline.wrist import WristSettings, arm_direction, cut_forearm, palm_circle
-
-SETTINGS = WristSettings()
+from lightgesture.features.find.proposals import (
+    LEAST_HEIGHT,
+    WRIST_DISTANCE,
+    arm_direction,
+    cut_forearm,
+    palm_circle,
+)
 
 
 def _raised_hand(slant_degrees, scale=1.0):
@@ -40,11 +44,11 @@ def _outline(mask):
 @settings(max_examples=40, deadline=None)
 def test_a_slanted_forearm_is_cut_across_its_own_direction(slant, scale):
     mask, centre, radius = _raised_hand(slant, scale)
-    hand = cut_forearm(*_outline(mask), SETTINGS)
+    hand = cut_forearm(*_outline(mask))
     assert hand is not None
     along = np.array([np.sin(np.radians(slant)), np.cos(np.radians(slant))])
     reach = ((hand - centre) @ along).max()
-    assert reach == pytest.approx(SETTINGS.wrist_distance * radius, abs=0.3 * radius)
+    assert reach == pytest.approx(WRIST_DISTANCE * radius, abs=0.3 * radius)
     assert hand[:, 1].min() == mask.any(axis=1).argmax()
 
 
@@ -54,7 +58,7 @@ def test_a_mirrored_hand_is_cut_as_its_mirror_image(slant):
     mask, _, _ = _raised_hand(slant)
     boxes = []
     for view in (mask, np.ascontiguousarray(mask[:, ::-1])):
-        hand = cut_forearm(*_outline(view), SETTINGS)
+        hand = cut_forearm(*_outline(view))
         assert hand is not None
         boxes.append(cv2.boundingRect(hand))
     x, y, width, height = boxes[1]
@@ -64,27 +68,27 @@ def test_a_mirrored_hand_is_cut_as_its_mirror_image(slant):
 def test_a_fist_without_an_arm_stays_whole():
     mask = np.zeros((80, 80), np.uint8)
     cv2.ellipse(mask, (40, 40), (24, 28), 0, 0, 360, 255, cv2.FILLED)
-    assert cut_forearm(*_outline(mask), SETTINGS) is None
+    assert cut_forearm(*_outline(mask)) is None
 
 
 def test_fingers_upwards_are_no_arm():
     mask, _, _ = _raised_hand(0.0)
     mask[142:] = 0
     centre, radius = palm_circle(mask)
-    assert arm_direction(mask, centre, radius, SETTINGS) is None
+    assert arm_direction(mask, centre, radius) is None
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 60), (60, 1), (3, 3), (40, 40)])
 def test_filled_rectangles_of_any_size_are_handled(size):
     mask = np.zeros((size[0] + 2, size[1] + 2), np.uint8)
     mask[1:-1, 1:-1] = 255
-    hand = cut_forearm(*_outline(mask), SETTINGS)
-    assert hand is None or cv2.boundingRect(hand)[3] >= SETTINGS.least_height
+    hand = cut_forearm(*_outline(mask))
+    assert hand is None or cv2.boundingRect(hand)[3] >= LEAST_HEIGHT
 
 
 def test_rests_that_balance_about_the_palm_are_no_arm():
     mask = np.zeros((41, 61), np.uint8)
-    cv2.circle(mask, (30, 20), 10, 255, cv2.FILLED)
-    settings = WristSettings(arm_top=-2.0, arm_ring=1.5, least_remainder=0.01)
-    mask[20, 5:8] = mask[20, 53:56] = 255
-    assert arm_direction(mask, (30, 20), 10.0, settings) is None
+    mask[20, 10:51] = 255
+    assert arm_direction(mask, (30, 20), 1.0) is None
+    mask[20, 51:55] = 255
+    np.testing.assert_allclose(arm_direction(mask, (30, 20), 1.0), (1, 0))

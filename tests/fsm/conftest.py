@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from lightgesture.fsm import Decoder, Event, Grammar, load_grammar
+from lightgesture.fsm import Decoder, Event, Grammar, Sign, Signs, load_grammar
 
 RATE = 30.0
 HOLD = 3
@@ -42,11 +42,12 @@ class Diver:
         self.gap = gap
         self.frame = 0
 
-    def show(self, pair: str | None, frames: int, **confidences: float) -> list[Event]:
-        left, right = pair.split(",") if pair else (None, None)
+    def show(self, pair: str | None, frames: int, *confidences: float) -> list[Event]:
+        """confidences: of the left and of the right hand."""
+        signs = Signs(*map(Sign, pair.split(","), confidences or (1.0, 1.0))) if pair else Signs()
         events: list[Event] = []
         for _ in range(frames):
-            events += self.decoder.step(left, right, self.frame / RATE, frame=self.frame, **confidences)
+            events += self.decoder.step(signs, self.frame / RATE, frame=self.frame)
             self.frame += 1
         return events
 

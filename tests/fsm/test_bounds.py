@@ -4,9 +4,9 @@ import re
 
 import pytest
 
-from lightgesture.fsm import table
-from lightgesture.fsm.forms import MAX_ITEMS, FormError, Vocabulary, parse_form
-from lightgesture.fsm.table import bind, compile_table
+from lightgesture.fsm.language import table
+from lightgesture.fsm.language.forms import MAX_ITEMS, FormError, Vocabulary, parse_form
+from lightgesture.fsm.language.table import bind, compile_table
 
 WORDS = Vocabulary.of(["STOP", "GO", "A", "B", "END", "0", "1", "P 1", "P 2"], "AND")
 

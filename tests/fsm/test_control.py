@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from lightgesture.fsm import Decoder, load_grammar
+from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "grammars" / "sonar.toml"
 
@@ -24,8 +24,8 @@ def sign(language):
     def show(text):
         events = []
         for word in text.split():
-            events += decoder.step(*pairs[word.replace("PARAM_", "PARAM ")], 0.0)
-            events += decoder.step(None, None, 0.0)
+            events += decoder.step(Signs.of_tokens(*pairs[word.replace("PARAM_", "PARAM ")]), 0.0)
+            events += decoder.step(Signs(), 0.0)
         return events
 
     show.decoder = decoder
@@ -79,18 +79,22 @@ class TestConfirmation:
 
     def test_it_times_out(self, sign, pick):
         sign("STOP EXEC 1 GO")
-        events = sign.decoder.step(None, None, 20.0)
+        events = sign.decoder.step(Signs(), 20.0)
         assert pick(events, "rejected", field="reason") == ["timeout"]
 
     def test_one_held_end_word_is_not_two(self, language, pick):
         decoder = Decoder(language, hold=2)
         events = []
         for left, right in (("0", "0"), ("pic", "2"), ("ok", "1"), *[("ok", "ok")] * 50):
-            events += decoder.step(left, right, 0.0) + decoder.step(left, right, 0.0)
+            events += decoder.step(Signs.of_tokens(left, right), 0.0) + decoder.step(
+                Signs.of_tokens(left, right), 0.0
+            )
         assert not pick(events, "instruction")
-        decoder.step(None, None, 0.0)
-        decoder.step("ok", "ok", 0.0)
-        assert pick(decoder.step("ok", "ok", 0.0), "instruction", field="text") == ["STOP EXEC 1 GO"]
+        decoder.step(Signs(), 0.0)
+        decoder.step(Signs.of_tokens("ok", "ok"), 0.0)
+        assert pick(decoder.step(Signs.of_tokens("ok", "ok"), 0.0), "instruction", field="text") == [
+            "STOP EXEC 1 GO"
+        ]
 
     def test_a_carrier_stands_for_all_its_numbers(self, write_grammar, pick):
         path = write_grammar(
@@ -99,7 +103,7 @@ class TestConfirmation:
         decoder = Decoder(load_grammar(path), hold=1)
         events = []
         for left, right in (("pic", "0"), ("3", "pic"), ("ok", "pic"), ("ok", "ok")):
-            events += decoder.step(left, right, 0.0)
+            events += decoder.step(Signs.of_tokens(left, right), 0.0)
         assert pick(events, "notice", field="reason") == ["confirm"]
 
 
@@ -115,7 +119,7 @@ class TestUnknownPairs:
             decoder = Decoder(load_grammar(path), hold=1)
             events = []
             for pair in pairs:
-                events += decoder.step(*pair.split(","), 0.0) + decoder.step(None, None, 0.0)
+                events += decoder.step(Signs.of_tokens(*pair.split(",")), 0.0) + decoder.step(Signs(), 0.0)
             return told(events)
 
         return decode
@@ -162,11 +166,11 @@ class TestKill:
     def test_starts_with_its_own_hold(self, language, pick):
         decoder = Decoder(language, hold=3)
         for frame in range(4):
-            decoder.step("0", "0", 0.0, frame=frame)
+            decoder.step(Signs.of_tokens("0", "0"), 0.0, frame=frame)
         events = [
             event
             for frame in range(4, 7)
-            for event in decoder.step("5", "0", frame / 10, 0.9, 0.8, frame=frame)
+            for event in decoder.step(Signs(Sign("5", 0.9), Sign("0", 0.8)), frame / 10, frame=frame)
         ]
         (instruction,) = pick(events, "instruction")
         assert (instruction.start_frame, instruction.start_time_s, instruction.frame) == (4, 0.4, 6)

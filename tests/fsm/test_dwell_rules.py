@@ -2,9 +2,9 @@
 
 import pytest
 
-from lightgesture.fsm import Decoder, load_grammar
-from lightgesture.fsm.dwell import Dwell, make_dwell
-from lightgesture.fsm.settings import DwellSettings
+from lightgesture.fsm import Decoder, Signs, load_grammar
+from lightgesture.fsm.language.settings import DwellSettings
+from lightgesture.fsm.rules.dwell import Dwell, make_dwell
 
 A, B = ("a", "a"), ("b", "b")
 RATES = (10, 30, 60)
@@ -209,5 +209,5 @@ class TestWhichRule:
         events = []
         for frame in range(13):
             right = "1" if frame == 5 else "0"
-            events += decoder.step("ok", right, frame / 30, frame=frame)
+            events += decoder.step(Signs.of_tokens("ok", right), frame / 30, frame=frame)
         assert pick(events, "word", field="frame") == [11]

@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-from lightgesture.fsm import Decoder, Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm import Decoder, Instruction, Notice, Rejected, Signs, State, Word
 
 KEYS = {
     "word": "type source frame time_s pair word state confidence",
@@ -110,16 +110,16 @@ def test_start_is_the_first_frame_of_the_hold_that_was_accepted(new_diver, pick)
 
 def test_frames_are_counted_where_none_are_given(grammar, pick):
     decoder = Decoder(grammar, hold=2)
-    events = [event for _ in range(3) for event in decoder.step("ok", "0", 0.0)]
+    events = [event for _ in range(3) for event in decoder.step(Signs.of_tokens("ok", "0"), 0.0)]
     assert pick(events, "word", field="frame") == [1]
-    decoder.step("5", "5", 0.0, frame=40)
-    assert pick(decoder.step("5", "5", 0.0), "word", field="frame") == [41]
+    decoder.step(Signs.of_tokens("5", "5"), 0.0, frame=40)
+    assert pick(decoder.step(Signs.of_tokens("5", "5"), 0.0), "word", field="frame") == [41]
 
 
 def test_word_confidence_is_the_mean_over_the_hold_of_the_lower_hand(new_diver, pick):
     diver = new_diver(hold=2)
-    diver.show("ok,0", 1, left_confidence=0.9, right_confidence=0.6)
-    (word,) = pick(diver.show("ok,0", 1, left_confidence=0.8, right_confidence=1.0), "word")
+    diver.show("ok,0", 1, 0.9, 0.6)
+    (word,) = pick(diver.show("ok,0", 1, 0.8, 1.0), "word")
     assert word.confidence == 0.7
 
 
@@ -127,7 +127,7 @@ def test_instruction_confidence_is_that_of_its_weakest_word(new_diver, pick):
     diver = new_diver(hold=2)
     events = []
     for pair, confidence in (("ok,0", 0.9), ("5,5", 0.75), ("ok,ok", 0.95)):
-        events += diver.show(pair, 2, left_confidence=confidence)
+        events += diver.show(pair, 2, confidence, 1.0)
     assert pick(events, "instruction", field="confidence") == [0.75]
 
 

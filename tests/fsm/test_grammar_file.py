@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from lightgesture.fsm import Decoder, GrammarError, load_grammar
+from lightgesture.fsm import Decoder, GrammarError, Signs, load_grammar
 
 
 def refusal(path) -> str:
@@ -49,7 +49,11 @@ def test_limits_dwell_programs_and_parameters_may_be_left_out(tmp_path, grammar)
 def test_new_task_touches_the_file_alone(write_grammar, pick):
     path = write_grammar(('"5,5" = "HOVER"', '"5,5" = "HOVER"\n"4,4" = "SONAR"'), ("HOVER|", "HOVER|SONAR|"))
     decoder = Decoder(load_grammar(path), hold=1)
-    events = [event for pair in ("00", "44", ("ok", "3"), ("ok", "ok")) for event in decoder.step(*pair, 0.0)]
+    events = [
+        event
+        for pair in ("00", "44", ("ok", "3"), ("ok", "ok"))
+        for event in decoder.step(Signs.of_tokens(*pair), 0.0)
+    ]
     assert pick(events, "instruction", field="text") == ["STOP SONAR 3 GO"]
 
 
@@ -61,7 +65,7 @@ def test_optional_word_and_form_without_joiner(write_grammar, pick):
     )
     decoder = Decoder(load_grammar(path), hold=1)
     signs = [("0", "0"), ("pic", "2"), ("ok", "3"), ("pic", "ok"), ("ok", "ok")]
-    events = [event for pair in signs for event in decoder.step(*pair, 0.0)]
+    events = [event for pair in signs for event in decoder.step(Signs.of_tokens(*pair), 0.0)]
     (instruction,) = pick(events, "instruction")
     assert (instruction.text, instruction.program, instruction.change) == ("STOP EXEC 3 NOW GO", 3, "NOW")
 
@@ -72,7 +76,7 @@ def test_digits_are_counted_for_each_number(write_grammar, pick):
     )
     decoder = Decoder(load_grammar(path), hold=1)
     signs = ["pic,0", "pic,pic", "ok,1", "ok,2", "right,right", "ok,0", "pic,ok", "ok,3", "ok,ok"]
-    events = [event for pair in signs for event in decoder.step(*pair.split(","), 0.0)]
+    events = [event for pair in signs for event in decoder.step(Signs.of_tokens(*pair.split(",")), 0.0)]
     (instruction,) = pick(events, "instruction")
     assert (instruction.text, instruction.duration_s, instruction.program) == ("CONTD SNAP 12 UP 3 GO", 12, 3)
 
@@ -262,7 +266,7 @@ def test_grammar_of_a_few_hundred_words_is_read(tmp_path, pick):
     path.write_text(many_words(200), encoding="utf-8")
     decoder = Decoder(load_grammar(path), hold=1)
     signs = [("t0", "t0"), ("t13", "t4"), ("t0", "t1")]  # 15 tokens: word 199 is 13 * 15 + 4
-    events = [event for pair in signs for event in decoder.step(*pair, 0.0)]
+    events = [event for pair in signs for event in decoder.step(Signs.of_tokens(*pair), 0.0)]
     assert pick(events, "instruction", field="text") == ["W0 W199 W1"]
 
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.fsm import Decoder, load_grammar
-from lightgesture.fsm.forms import spell
+from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
+from lightgesture.fsm.language.forms import spell
 
 GRAMMAR = load_grammar()
 TOKENS = st.sampled_from([*GRAMMAR.tokens, None])
@@ -37,7 +37,12 @@ def decode(frames, hold):
     time_s = 0.0
     for (left, right), count, pause_s in frames:
         for _ in range(count):
-            steps.append(decoder.step(left, right, time_s, 0.9, 0.8))
+            steps.append(
+                decoder.step(
+                    Signs(Sign(left, 0.9, seen=left is not None), Sign(right, 0.8, seen=right is not None)),
+                    time_s,
+                )
+            )
             time_s += 1 / 30
         time_s += pause_s if abs(pause_s) < 25 else 0.0
     steps.append(decoder.finish())
@@ -94,7 +99,9 @@ def test_state_records_follow_the_sentence(frames, hold):
 def test_a_sign_shorter_than_the_hold_says_nothing(pairs):
     shortened = [pair for index, pair in enumerate(pairs) if index == 0 or pair != pairs[index - 1]]
     decoder = Decoder(GRAMMAR, hold=4)
-    events = [event for pair in shortened for _ in range(3) for event in decoder.step(*pair, 0.0)]
+    events = [
+        event for pair in shortened for _ in range(3) for event in decoder.step(Signs.of_tokens(*pair), 0.0)
+    ]
     assert not [event for event in events if event.type != "state"]
 
 
@@ -111,7 +118,7 @@ def language(rule):
     return replace(GRAMMAR, dwell=replace(GRAMMAR.dwell, rule=rule))
 
 
-SEEN = st.sampled_from([None, True, False])
+SEEN = st.booleans()
 TOLD = st.tuples(WORDS, st.integers(1, 20), SEEN, SEEN, st.floats(0.3, 1.0))
 """A pair, how long it is shown, which hands are in view, and its probability."""
 
@@ -125,7 +132,8 @@ def test_no_rule_issues_what_was_not_signed(signs, rule, rate):
     frame = 0
     for (left, right), count, left_seen, right_seen, confidence in signs:
         for _ in range(count):
-            events = decoder.step(left, right, frame / rate, confidence, 1.0, frame, left_seen, right_seen)
+            signs = Signs(Sign(left, confidence, seen=left_seen), Sign(right, seen=right_seen))
+            events = decoder.step(signs, frame / rate, frame)
             frame += 1
             for event in events:
                 if event.type == "word":
@@ -155,7 +163,7 @@ def test_every_sentence_up_to_five_words_decodes_to_itself():
     for words in every:
         events = []
         for word in words:
-            events += decoder.step(*inside[word], 0.0) + decoder.step(None, None, 0.0)
+            events += decoder.step(Signs.of_tokens(*inside[word]), 0.0) + decoder.step(Signs(), 0.0)
         outcome = [event for event in events if event.type in ("instruction", "rejected", "notice")]
         assert len(outcome) == 1
         assert outcome[0].text == spell(words, "AND")
@@ -175,7 +183,9 @@ def decode_by_rule(words, rule, rate, hold_s=0.7, passage_s=0.3):
         for shown, seconds in ((None, passage_s), (inside[word], hold_s)):
             for _ in range(round(seconds * rate)):
                 left, right = shown or (None, None)
-                events += decoder.step(left, right, round(frame / rate, 3), 0.95, 0.9, frame, True, True)
+                events += decoder.step(
+                    Signs(Sign(left, 0.95), Sign(right, 0.9)), round(frame / rate, 3), frame
+                )
                 frame += 1
     return [event for event in events if event.type in ("instruction", "rejected", "notice")]
 

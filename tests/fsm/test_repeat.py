@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from lightgesture.fsm import Decoder, GrammarError, load_grammar
-from lightgesture.fsm.forms import FormError, Vocabulary, parse_form
-from lightgesture.fsm.table import compile_table
+from lightgesture.fsm import Decoder, GrammarError, Signs, load_grammar
+from lightgesture.fsm.language.forms import FormError, Vocabulary, parse_form
+from lightgesture.fsm.language.table import compile_table
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "grammars" / "repeat.toml"
 WORDS = Vocabulary.of(["STOP", "GO", "A", "B", "END", "0", "1", "P 1", "P 2"], "AND")
@@ -26,7 +26,7 @@ def decode(language):
         decoder = Decoder(language, hold=1)
         events = []
         for word in text.split():
-            events += decoder.step(*pairs[word], 0.0) + decoder.step(None, None, 0.0)
+            events += decoder.step(Signs.of_tokens(*pairs[word]), 0.0) + decoder.step(Signs(), 0.0)
         return [event for event in events if event.type in ("instruction", "rejected")]
 
     return sign

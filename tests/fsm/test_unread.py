@@ -4,11 +4,12 @@ from itertools import product
 
 import pytest
 
-from lightgesture.fsm import Decoder, load_grammar
-from lightgesture.fsm.unread import UnreadSigning
+from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
+from lightgesture.fsm.rules.unread import UnreadSigning
 
 HOLD = 15
 SIGNED = "STOP HOVER 3 AND 5 GO"
+pair = Signs.of_tokens
 
 
 def sign(decoder, pairs, words, lost=(), how="unread", held=22, passage=9, rate=30.0):
@@ -18,7 +19,9 @@ def sign(decoder, pairs, words, lost=(), how="unread", held=22, passage=9, rate=
     def show(left, right, is_seen=True):
         nonlocal frame
         events.extend(
-            decoder.step(left, right, frame / rate, frame=frame, left_seen=is_seen, right_seen=is_seen)
+            decoder.step(
+                Signs(Sign(left, seen=is_seen), Sign(right, seen=is_seen)), frame / rate, frame=frame
+            )
         )
         frame += 1
 
@@ -114,7 +117,7 @@ def test_a_grammar_may_count_hidden_signs_too(write_grammar, words_to_pairs, pic
 def test_hidden_time_adds_to_unread_time(write_grammar):
     """A sign of which something hides one half and nobody can read the other."""
     language = load_grammar(write_grammar(("count_hidden = false", "count_hidden = true")))
-    halves = [(None, None, {"left_seen": True}), (None, None, {})]
+    halves = [Signs(left=UNREAD), Signs()]
     assert frames_until_dropped(open_sentence(language), *halves) == 4
     assert frames_until_dropped(open_sentence(load_grammar()), *halves) == 8
 
@@ -126,9 +129,7 @@ def test_the_last_word_held_on_is_no_new_sign(grammar, words_to_pairs, pick):
 
 def test_unread_signing_outside_a_sentence_says_nothing(grammar, pick):
     decoder = Decoder(grammar)
-    events = [
-        event for _ in range(200) for event in decoder.step(None, "5", 0.0, left_seen=True, right_seen=True)
-    ]
+    events = [event for _ in range(200) for event in decoder.step(Signs(Sign(None), Sign("5")), 0.0)]
     assert not pick(events, "rejected", "notice")
 
 
@@ -137,33 +138,36 @@ def open_sentence(grammar, **options):
     decoder = Decoder(grammar, hold=4, **options)
     for left, right in (("0", "0"), ("5", "5")):
         for _ in range(4):
-            decoder.step(left, right, 0.0)
+            decoder.step(pair(left, right), 0.0)
     return decoder
 
 
 def frames_until_dropped(decoder, *frames):
     """How many of the frames, repeated, the sentence survives."""
     for count in range(1000):
-        decoder.step(*frames[count % len(frames)][:2], 0.0, **frames[count % len(frames)][2])
+        decoder.step(frames[count % len(frames)], 0.0)
         if decoder.state == "idle":
             return count
     return None
 
 
+UNREAD = Sign(None)
+FIVE, OTHER_FIVE = Signs(left=Sign("5")), Signs(right=Sign("5"))
+
+
 @pytest.mark.parametrize(
     ("frames", "expected"),
     [
-        ([(None, None, {"left_seen": True, "right_seen": True})], 4),
-        ([(None, None, {"left_seen": True, "right_seen": False})], 4),
-        ([(None, None, {"right_seen": True})], 4),
-        ([(None, None, {"left_seen": False, "right_seen": False})], None),
-        ([(None, None, {})], None),  # nothing was told, and nothing is assumed
-        ([("5", None, {})], 4),  # a hand that has a token is in view
-        ([(None, "5", {})], 4),
-        ([("5", "5", {})], None),  # the last word
-        ([("ok", "3", {}), ("ok", "4", {})], 5),  # each may still become a word while it is shown
-        ([("ok", "3", {}), ("ok", "3", {}), ("ok", "3", {}), (None, "3", {})], 7),
-        ([("5", "5", {}), (None, "5", {})], 5),  # released at once, it is a sign that breaks off
+        ([Signs(UNREAD, UNREAD)], 4),
+        ([Signs(left=UNREAD)], 4),
+        ([Signs(right=UNREAD)], 4),
+        ([Signs()], None),
+        ([FIVE], 4),
+        ([OTHER_FIVE], 4),
+        ([pair("5", "5")], None),  # the last word
+        ([pair("ok", "3"), pair("ok", "4")], 5),  # each may still become a word while it is shown
+        ([*[pair("ok", "3")] * 3, Signs(right=Sign("3"))], 7),
+        ([pair("5", "5"), OTHER_FIVE], 5),  # released at once, it is a sign that breaks off
     ],
 )
 def test_what_counts_as_unread(grammar, frames, expected):
@@ -174,18 +178,18 @@ def test_a_word_begins_the_count_anew(grammar, pick):
     decoder = open_sentence(grammar)
     for left, right in (("ok", "1"), ("ok", "2"), ("ok", "ok")):
         for _ in range(4):
-            decoder.step(None, None, 0.0, left_seen=True)
-        events = [event for _ in range(4) for event in decoder.step(left, right, 0.0)]
+            decoder.step(Signs(left=Sign(None)), 0.0)
+        events = [event for _ in range(4) for event in decoder.step(pair(left, right), 0.0)]
     assert pick(events, "instruction", field="text") == ["STOP HOVER 12 GO"]
 
 
 def test_a_pair_that_is_no_word_was_told_and_does_not_count(grammar, pick):
     decoder = open_sentence(grammar)
-    events = [event for _ in range(4) for event in decoder.step("3", "left", 0.0)]
-    events += [event for _ in range(4) for event in decoder.step(None, None, 0.0, left_seen=True)]
+    events = [event for _ in range(4) for event in decoder.step(Signs.of_tokens("3", "left"), 0.0)]
+    events += [event for _ in range(4) for event in decoder.step(Signs(left=Sign(None)), 0.0)]
     assert pick(events, "notice", field="reason") == ["unknown_pair"]
     assert decoder.sentence == "STOP HOVER"
-    assert pick(decoder.step(None, None, 0.0, left_seen=True), "rejected", field="reason") == ["unread_sign"]
+    assert pick(decoder.step(Signs(left=Sign(None)), 0.0), "rejected", field="reason") == ["unread_sign"]
 
 
 def test_a_sign_half_held_when_the_sentence_drops_does_not_open_the_next(grammar, pick):
@@ -193,16 +197,18 @@ def test_a_sign_half_held_when_the_sentence_drops_does_not_open_the_next(grammar
     decoder = Decoder(grammar, hold=4)
     for left, right in (("0", "0"), ("5", "5")):
         for _ in range(4):
-            decoder.step(left, right, 0.0)
+            decoder.step(pair(left, right), 0.0)
     for left in ("ok", "ok", "ok", "5", "5", "ok"):  # the last frame breaks the limit as the sign begins
-        events = decoder.step(left, "0", 0.0)
+        events = decoder.step(Signs.of_tokens(left, "0"), 0.0)
     assert pick(events, "rejected", field="reason") == ["unread_sign"]
-    assert not pick([event for _ in range(20) for event in decoder.step("ok", "0", 0.0)], "word")
+    assert not pick(
+        [event for _ in range(20) for event in decoder.step(Signs.of_tokens("ok", "0"), 0.0)], "word"
+    )
 
 
 def test_the_limit_is_a_setting_of_the_grammar(write_grammar):
     lenient = load_grammar(write_grammar(("unread = 1.2", "unread = 2.5")))
-    assert frames_until_dropped(open_sentence(lenient), (None, None, {"left_seen": True})) == 10
+    assert frames_until_dropped(open_sentence(lenient), Signs(left=UNREAD)) == 10
 
 
 class TestUnreadSigning:

@@ -4,6 +4,8 @@ from itertools import product
 
 import pytest
 
+from lightgesture.fsm import Signs
+
 TOKENS = ["0", "1", "2", "3", "4", "5", "left", "right", "pic", "ok"]
 ALL_PAIRS = [f"{left},{right}" for left, right in product(TOKENS, TOKENS)]
 
@@ -75,5 +77,5 @@ def test_ok_and_fist_is_stop_while_idle_and_the_digit_0_inside(diver, pick):
 
 def test_one_missing_hand_is_no_pair(diver):
     for _ in range(50):
-        assert diver.decoder.step("ok", None, 0.0) == []
-        assert diver.decoder.step(None, "0", 0.0) == []
+        assert diver.decoder.step(Signs.of_tokens("ok", None), 0.0) == []
+        assert diver.decoder.step(Signs.of_tokens(None, "0"), 0.0) == []

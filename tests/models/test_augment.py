@@ -4,8 +4,15 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.pictures.augment import AugmentSettings, augment, hand_mask, shifted_box
-from lightgesture.training.pictures.light import LightSettings, relight, under_water
+from lightgesture.training.pictures.augment import (
+    CANVAS,
+    REACH,
+    AugmentSettings,
+    augment,
+    hand_mask,
+    shifted_box,
+)
+from lightgesture.training.pictures.light import LightSettings, path_before_hand, relight
 from lightgesture.training.pool.negatives import Scene, missed_hand, negatives
 from lightgesture.training.pool.samples import LabelledHand, landmark_box
 
@@ -50,10 +57,10 @@ def test_a_mirrored_copy_exchanges_left_and_right() -> None:
 def test_the_box_follows_the_hand(landmarks: bool) -> None:
     hand = thumb_left(landmarks=landmarks)
     image, box, _ = augment(hand, [], PLAIN, np.random.default_rng(0))
-    assert image.shape == (96, 96, 3)
-    zoom = 96 / (PLAIN.reach * max(hand.box[2:]))
+    assert image.shape == (CANVAS, CANVAS, 3)
+    zoom = CANVAS / (REACH * max(hand.box[2:]))
     assert box[2] == pytest.approx(hand.box[2] * zoom, abs=2)
-    assert box[0] + box[2] / 2 == pytest.approx(48, abs=2)
+    assert box[0] + box[2] / 2 == pytest.approx(CANVAS / 2, abs=2)
 
 
 def test_another_background_leaves_the_hand() -> None:
@@ -98,9 +105,9 @@ def test_still_light_changes_nothing() -> None:
 
 def test_water_takes_red_first() -> None:
     picture = np.full((8, 8, 3), 0.6, np.float32)
-    clear = replace(STILL, murk=0.0)
     for seed in range(20):
-        blue, green, red = under_water(picture, clear, np.random.default_rng(seed))[4, 4]
+        clear = replace(path_before_hand(np.random.default_rng(seed)), scattered=np.float32(1.0))
+        blue, green, red = clear.see(picture)[4, 4]
         assert red < min(blue, green)
         assert max(blue, green) <= 0.6
 

@@ -1,5 +1,7 @@
 """The hand net: the same answers from both run-times; its file comes back whole or is refused."""
 
+import hashlib
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -8,13 +10,24 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lightgesture.features.net.network import IntegerNetwork, Quantisation, Weights
-from lightgesture.features.net.nodes import WEIGHTED, Node, Shape, infer_shapes, weight_shape
+from lightgesture.features.net.file import check_network
+from lightgesture.features.net.network import (
+    WEIGHTED,
+    IntegerNetwork,
+    Node,
+    Quantisation,
+    Shape,
+    Weights,
+    infer_shapes,
+    weight_shape,
+)
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models import ModelError, load_classifier
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnClassifier, CnnModel
-from lightgesture.models.cnn_file import read_cnn_model, write_cnn_model
+from lightgesture.models.cnn_file import read_cnn_model
+from lightgesture.training.model_files import write_cnn_model
+from lightgesture.training.nets.flatbuffer import with_litert
 
 SIZE = 16
 OUTLINE = ContourSettings(size=16, directions=8)
@@ -49,7 +62,8 @@ def random_model(seed: int, has_outline: bool) -> CnnModel:
                 np.full(channels, spread, np.float32),
             )
     network = IntegerNetwork(inputs, tuple(nodes), (SCORES,), weights, scales)
-    network.check()
+    check_network(network)
+    network = with_litert(network)
     mean = rng.normal(0, 1, length).astype(np.float32)
     deviation = rng.uniform(0.5, 2, length).astype(np.float32)
     contour = OUTLINE if has_outline else None
@@ -104,6 +118,13 @@ def test_a_written_model_reads_back_the_same(model: CnnModel, path: Path) -> Non
     assert load_classifier(path).classes == model.classes
 
 
+def test_a_file_of_the_first_format_is_told_to_be_trained_again(
+    path: Path, changed: Callable[..., Path]
+) -> None:
+    with pytest.raises(ModelError, match="has format 1, this version reads 2; train it again"):
+        load_classifier(changed(path, lambda header, arrays: header.update(format=1)))
+
+
 def test_every_cut_is_refused(path: Path) -> None:
     whole = path.read_bytes()
     for length in range(0, len(whole), max(1, len(whole) // 40)):
@@ -114,8 +135,22 @@ def test_every_cut_is_refused(path: Path) -> None:
         assert "\n" not in str(refusal.value)
 
 
-def spoil_scales(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
-    arrays["net_seen_scales"] = np.full_like(arrays["net_seen_scales"], np.nan)
+def change_layout(arrays: dict[str, np.ndarray], **changes: Any) -> None:
+    layout = {**json.loads(arrays["net_layout"].tobytes()), **changes}
+    arrays["net_layout"] = np.frombuffer(json.dumps(layout).encode(), np.uint8)
+
+
+def flip_a_bit(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
+    arrays["net_tflite"] = arrays["net_tflite"].copy()
+    arrays["net_tflite"][700] ^= 1
+
+
+def forge(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
+    """Another file with its right digest."""
+    content = arrays["net_tflite"].copy()
+    content[:64] = 7
+    arrays["net_tflite"] = content
+    change_layout(arrays, sha256=hashlib.sha256(content.tobytes()).hexdigest())
 
 
 @pytest.mark.parametrize(
@@ -132,10 +167,12 @@ def spoil_scales(_: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
         lambda header, arrays: header.update(contour={"size": 3}),
         lambda header, arrays: header.update(smallest_hand="many"),
         lambda header, arrays: arrays.pop("net_layout"),
-        lambda header, arrays: arrays.pop("net_seen_weights"),
-        lambda header, arrays: arrays.update(net_seen_weights=arrays["net_seen_weights"][:-1]),
+        lambda header, arrays: arrays.pop("net_tflite"),
+        lambda header, arrays: change_layout(arrays, outputs=["seen"]),
+        lambda header, arrays: change_layout(arrays, places={}),
         lambda header, arrays: arrays.update(contour_mean=np.full(99, 1.0, np.float32)),
-        spoil_scales,
+        flip_a_bit,
+        forge,
     ],
 )
 def test_a_damaged_file_is_refused_in_one_line(

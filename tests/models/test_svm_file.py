@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lightgesture.errors import UsageError
 from lightgesture.models import ModelError, TrainingSample, load_classifier
-from lightgesture.models.svm_file import SvmModel, read_svm_model, write_svm_model
+from lightgesture.models.svm_file import SvmModel, read_svm_model
+from lightgesture.training.model_files import write_svm_model
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 
 
@@ -126,6 +128,7 @@ def test_a_damaged_header_is_refused_in_one_line(
 
 
 def test_a_model_that_cannot_be_written_leaves_nothing(model: SvmModel, tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match="cannot be written"):
-        write_svm_model(model, tmp_path / "missing" / "model.npz")
-    assert not list(tmp_path.iterdir())
+    (tmp_path / "taken").write_text("a file, no folder")
+    with pytest.raises(UsageError, match="cannot be written"):
+        write_svm_model(model, tmp_path / "taken" / "model.npz")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["taken"]

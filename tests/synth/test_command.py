@@ -7,9 +7,9 @@ import pytest
 
 from lightgesture.errors import UsageError
 from lightgesture.synth import command as synth
-from lightgesture.synth.parallel import render_frames
-from lightgesture.synth.sample import SAMPLE_SPEC
+from lightgesture.synth.output import render_frames
 from lightgesture.synth.scene import Scene
+from lightgesture.synth.showcase import SAMPLE_SPEC
 from lightgesture.synth.spec import SceneSpec, WaterSpec
 
 
@@ -22,7 +22,7 @@ def run(*words):
 @pytest.fixture
 def scene_file(tmp_path):
     path = tmp_path / "dive.toml"
-    path.write_text('sentences = ["STOP UP GO"]\nsize = [160, 120]\nhold = [15, 15]\npassage = [3, 3]\n')
+    path.write_text('sentences = ["STOP UP GO"]\nsize = [96, 72]\nhold = [15, 15]\npassage = [3, 3]\n')
     return path
 
 
@@ -51,7 +51,7 @@ def test_pictures_instead_of_video(scene_file, tmp_path):
     ("words", "complaint"),
     [
         ([], "nothing to render"),
-        (["nowhere.toml"], "nowhere.toml: cannot be read"),
+        (["nowhere.toml"], "nowhere.toml: no such file"),
         (["--seed", "1", "--difficulty", "2"], "outside 0 to 1"),
         (["--seed", "-1"], "--seed at least 0"),
         (["--seed", "1", "--jobs", "0"], "--jobs must be at least 1"),
@@ -73,6 +73,7 @@ def test_the_sample_signs_its_sentence_with_both_hands_in_view():
     assert {hand.side: hand.token for hand in frame.record.hands} == {"left": "ok", "right": "0"}
 
 
+@pytest.mark.slow
 def test_several_processes_render_the_same_frames():
     spec = SceneSpec(size=(80, 64), sentences=(), water=WaterSpec(kind="none"))
     scene = Scene(spec)

@@ -9,9 +9,7 @@ from lightgesture.models import CLASSES, NONE
 from lightgesture.training.datasets import find_data
 from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions import bank as training
-from lightgesture.training.regions.bank import BankTraining, hand_outlines, make_bank
-
-FEW = BankTraining(centres=2, hands=3, frames=4, others=6)
+from lightgesture.training.regions.bank import hand_outlines, make_bank
 
 
 @pytest.fixture(scope="module")
@@ -22,8 +20,10 @@ def data():
         pytest.skip("needs the optional data folder ../shared/data")
 
 
-def test_a_bank_holds_the_tokens_and_other_things_and_is_the_same_each_time(data):
-    first, second = make_bank(data, 5, settings=FEW), make_bank(data, 5, settings=FEW)
+def test_a_bank_holds_the_tokens_and_other_things_and_is_the_same_each_time(data, monkeypatch):
+    for name, few in {"CENTRES": 2, "HANDS": 2, "FRAMES": 4, "OTHERS": 6}.items():
+        monkeypatch.setattr(training, name, few)
+    first, second = make_bank(data, 5), make_bank(data, 5)
     assert first.classes == (*(token for token in CLASSES if token != NONE), OTHER)
     sizes = np.bincount(first.owner)
     assert sizes[:-1].tolist() == [2] * 10
@@ -39,9 +39,9 @@ def test_no_left_out_source_is_read_and_each_hand_is_of_another_source(data, mon
         return np.array([[0, 0], [9, 0], [9, 9]], np.int32)
 
     monkeypatch.setattr(training, "_cut_out_outline", read)
-    settings = BankTraining(hands=10)
+    monkeypatch.setattr(training, "HANDS", 10)
     without = LeftOut(fold=2)
-    outlines = hand_outlines(data, np.random.default_rng(0), without, settings)
+    outlines = hand_outlines(data, np.random.default_rng(0), without)
     assert [len(found) for found in outlines.values()] == [10] * 10
     sources = {source for _, source in seen}
     assert "emre_drone" not in sources

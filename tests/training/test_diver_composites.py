@@ -10,9 +10,10 @@ from lightgesture.synth.body import BodyLook, Camera
 from lightgesture.synth.diver import ArmState, DiverState
 from lightgesture.synth.shading import Light
 from lightgesture.synth.water import make_water
-from lightgesture.training.pictures.composites import Background, CompositeSettings
+from lightgesture.training.pictures import surroundings
+from lightgesture.training.pictures.composites import Background
 from lightgesture.training.pictures.cutouts import Cutout
-from lightgesture.training.pictures.diver_composites import NO_POSE, DiverComposer, DiverSettings
+from lightgesture.training.pictures.diver_composites import NO_POSE, DiverComposer
 from lightgesture.training.pictures.real_hands import Shown, draw_diver, skin_colour
 from lightgesture.training.pictures.surroundings import Scenery, darken, light_of_room, water_of_picture
 
@@ -101,8 +102,9 @@ def _composer():
     waters = [Background(np.full((90, 120, 3), (150, 110, 40), np.uint8), "sea")]
     rooms = [Background(rng.integers(0, 255, (90, 120, 3), np.uint8), "room")]
     hands = [drawn_cutout(token, source=source) for source in "ab" for token in ("left", "0")]
-    settings = CompositeSettings(size=SIZE, single=0.2)
-    return DiverComposer(hands, waters, rooms, settings, DiverSettings(drawn=0.2))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(surroundings, "COUNT", 2)
+        return DiverComposer(hands, waters, rooms, SIZE)
 
 
 def test_composed_pictures_repeat_and_their_boxes_lie_inside(composer):
@@ -122,7 +124,7 @@ def test_composed_pictures_repeat_and_their_boxes_lie_inside(composer):
 def test_thumbs_point_by_the_divers_own_sides(composer):
     rng = np.random.default_rng(1)
     for _ in range(20):
-        hands = composer._pair(rng)
+        hands = composer.draw_pair(rng)
         for side, cutout in hands.items():
             if cutout.token == "left":  # inwards: to image left on the diver's left hand
                 is_at_left = cutout.alpha[38, :15].any()

@@ -7,7 +7,9 @@ import pytest
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.standardise import channel_tables
-from lightgesture.training.nets.hand_samples import HandSamples, HandSampling, standardised
+from lightgesture.synth import crops
+from lightgesture.training.nets import hand_samples
+from lightgesture.training.nets.hand_samples import HandSamples, standardised
 from lightgesture.training.pool.negatives import Scene
 from lightgesture.training.pool.patch_kinds import (
     HIDDEN,
@@ -21,6 +23,11 @@ from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_wit
 from lightgesture.training.pool.samples import LabelledHand
 
 SETTINGS = PoolSettings(copies=2, rounds=1, rendered=0)
+
+
+@pytest.fixture(autouse=True)
+def _few_backdrops(monkeypatch):
+    monkeypatch.setattr(crops, "BACKDROPS", 1)
 
 
 def picture(seed, size=80):
@@ -53,18 +60,28 @@ def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
     assert any(source.startswith("synthetic") for source in pool.sources)
 
 
+def assert_same(one, other):
+    np.testing.assert_array_equal(one.patches, other.patches)
+    np.testing.assert_array_equal(one.contours, other.contours)
+    assert (one.tokens == other.tokens).all()
+
+
+def test_reruns_change_nothing_and_another_seed_does(originals, tmp_path):
+    first = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", lambda *_: None)
+    assert_same(first, make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", pytest.fail))
+    other = make_pool(originals, SETTINGS, 4, 1, tmp_path / "c", lambda *_: None)
+    assert len(other.patches) != len(first.patches) or (other.patches != first.patches).any()
+
+
 @pytest.mark.slow
-def test_processes_and_reruns_change_nothing(originals, tmp_path):
-    settings = replace(SETTINGS, rendered=6)
-    alone = make_pool(originals, settings, 3, 1, tmp_path / "a", lambda *_: None)
-    shared = make_pool(originals, settings, 3, 2, tmp_path / "b", lambda *_: None)
-    again = make_pool(originals, settings, 3, 1, tmp_path / "a", pytest.fail)
-    other = make_pool(originals, settings, 4, 1, tmp_path / "c", lambda *_: None)
-    for pool in (shared, again):
-        np.testing.assert_array_equal(alone.patches, pool.patches)
-        np.testing.assert_array_equal(alone.contours, pool.contours)
-        assert (alone.tokens == pool.tokens).all()
-    assert len(other.patches) != len(alone.patches) or (other.patches != alone.patches).any()
+def test_processes_change_nothing(originals, tmp_path, monkeypatch):
+    # Other processes draw all surroundings.
+    monkeypatch.undo()
+    pools = [
+        make_pool(originals, replace(SETTINGS, rendered=6), 3, jobs, tmp_path / f"{jobs}", lambda *_: None)
+        for jobs in (1, 2)
+    ]
+    assert_same(*pools)
 
 
 def test_many_patches_are_standardised_as_the_board_does_one():
@@ -78,7 +95,7 @@ def test_many_patches_are_standardised_as_the_board_does_one():
 def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path):
     pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
     chosen = pool.tokens == "5"
-    samples = HandSamples(pool, chosen, ("5",), MARGIN, HandSampling(erased=0.5))
+    samples = HandSamples(pool, chosen, ("5",), MARGIN)
     batch = samples.draw(np.random.default_rng(1), 300)
     assert batch.patches.shape == (300, 32, 32, 3)
     assert np.abs(batch.patches).max() <= 4.5
@@ -163,10 +180,11 @@ def test_mild_copies_stay_near_their_hand(originals, tmp_path):
     assert mean_distance(replace(none, mild_share=0.5)) < 0.5 * mean_distance(none)
 
 
-def test_answers_of_other_nets_stay_with_their_patches(originals, tmp_path):
+def test_answers_of_other_nets_stay_with_their_patches(originals, tmp_path, monkeypatch):
     pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
     chosen = pool.tokens == "5"
-    samples = HandSamples(pool, chosen, ("5",), MARGIN, HandSampling(erased=0.0))
+    monkeypatch.setattr(hand_samples, "ERASED_SHARE", 0.0)
+    samples = HandSamples(pool, chosen, ("5",), MARGIN)
     assert samples.draw(np.random.default_rng(1), 3).answers is None
     middles = samples.middles(0, len(samples))
     told = samples.with_answers(np.arange(len(samples), dtype=np.float16)[:, None])

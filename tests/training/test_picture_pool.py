@@ -4,11 +4,14 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.pictures.composites import Background, CompositeSettings
+from lightgesture.training.pictures import surroundings
+from lightgesture.training.pictures.composites import Background
 from lightgesture.training.pictures.cutouts import Cutout
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 
 COUNT = 12
+COUNT_OF_PLACES = surroundings.COUNT
+"""What other processes draw."""
 
 
 def a_hand(source):
@@ -23,11 +26,18 @@ def _ingredients():
     rng = np.random.default_rng(0)
     rooms = [Background(rng.integers(0, 255, (90, 120, 3), np.uint8), "room")]
     waters = [Background(np.full((90, 120, 3), (150, 110, 40), np.uint8), "sea")]
-    return Ingredients([a_hand("anna"), a_hand("ben")], waters, rooms, CompositeSettings(size=(80, 60)))
+    return Ingredients([a_hand("anna"), a_hand("ben")], waters, rooms, (80, 60))
+
+
+@pytest.fixture(name="few_places", scope="module")
+def _few_places():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(surroundings, "COUNT", 1)
+        yield
 
 
 @pytest.fixture(name="pool", scope="module")
-def _pool(ingredients, tmp_path_factory):
+def _pool(few_places, ingredients, tmp_path_factory):
     return compose_pool(ingredients, COUNT, 3, 1, tmp_path_factory.mktemp("pool") / "one.npy")
 
 
@@ -35,11 +45,6 @@ def assert_same(first, second):
     for one, other in zip(first, second, strict=True):
         np.testing.assert_array_equal(one.image, other.image)
         assert (one.boxes, one.faces, one.sources) == (other.boxes, other.faces, other.sources)
-
-
-@pytest.mark.slow
-def test_two_processes_compose_what_one_does(ingredients, pool, tmp_path):
-    assert_same(pool, compose_pool(ingredients, COUNT, 3, 2, tmp_path / "two.npy"))
 
 
 def test_each_picture_names_its_hands_and_background(pool):
@@ -54,7 +59,7 @@ def test_each_picture_names_its_hands_and_background(pool):
     assert any(picture.faces for picture in pool)
 
 
-def test_a_pool_that_is_there_is_used_as_it_is(ingredients, tmp_path):
+def test_a_pool_that_is_there_is_used_as_it_is(few_places, ingredients, tmp_path):
     path = tmp_path / "pool.npy"
     first = compose_pool(ingredients, 2, 0, 1, path)
     written = path.stat().st_mtime_ns
@@ -62,8 +67,15 @@ def test_a_pool_that_is_there_is_used_as_it_is(ingredients, tmp_path):
     assert path.stat().st_mtime_ns == written
 
 
-def test_pictures_without_their_table_are_made_again(ingredients, tmp_path):
+def test_pictures_without_their_table_are_made_again(few_places, ingredients, tmp_path):
     path = tmp_path / "pool.npy"
     np.save(path, np.zeros((2, 60, 80, 3), np.uint8))
     whole = compose_pool(ingredients, 2, 0, 1, tmp_path / "whole.npy")
     assert_same(whole, compose_pool(ingredients, 2, 0, 1, path))
+
+
+@pytest.mark.slow
+def test_two_processes_compose_what_one_does(ingredients, tmp_path, monkeypatch):
+    monkeypatch.setattr(surroundings, "COUNT", COUNT_OF_PLACES)
+    alone, shared = (compose_pool(ingredients, COUNT, 3, jobs, tmp_path / f"{jobs}.npy") for jobs in (1, 2))
+    assert_same(alone, shared)

@@ -8,9 +8,8 @@ import pytest
 
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.pool.left_out import LeftOut, left_out
-from lightgesture.training.regions.region_pictures import PictureSettings, read_material, without_hands
+from lightgesture.training.regions.region_pictures import read_material, without_hands
 
-SETTINGS = PictureSettings(cutouts_per_source=1)
 LANDMARKS = ";".join(f"{40 + 8 * (i % 5)};{100 - 4 * i}" for i in range(21))
 
 
@@ -68,14 +67,14 @@ def sources(material):
 
 
 def test_only_what_may_be_trained_on_is_read(data):
-    frames, empty, hands = sources(read_material(data, LeftOut(), SETTINGS, 0))
+    frames, empty, hands = sources(read_material(data, LeftOut(), 0))
     assert frames == ["anna", "ben", "subhi"]
     assert sorted(empty) == ["funie", "u45"]
     assert hands == {"anna", "cleo"}
 
 
 def test_sources_left_out_by_name_are_in_nothing(data):
-    material = read_material(data, left_out(["anna", "subhi", "funie"]), SETTINGS, 0)
+    material = read_material(data, left_out(["anna", "subhi", "funie"]), 0)
     frames, empty, hands = sources(material)
     assert frames == ["ben"]
     assert empty == ["u45"]
@@ -85,12 +84,12 @@ def test_sources_left_out_by_name_are_in_nothing(data):
 
 def test_a_fold_is_left_out_of_every_kind(data):
     for number in (1, 2):
-        frames, empty, hands = sources(read_material(data, left_out(fold=f"{number}/2"), SETTINGS, 0))
+        frames, empty, hands = sources(read_material(data, left_out(fold=f"{number}/2"), 0))
         assert all(fold_of(name, 2) != number - 1 for name in (*frames, *empty, *hands))
 
 
 def test_boxes_and_faces_shrink_with_the_picture(data):
-    anna, _, subhi = read_material(data, LeftOut(), SETTINGS, 0).frames
+    anna, _, subhi = read_material(data, LeftOut(), 0).frames
     assert anna.image.shape == (240, 320, 3)
     assert anna.boxes == ((100, 50, 50, 50),)
     assert anna.faces == ((150, 10, 40, 50),)
@@ -99,6 +98,6 @@ def test_boxes_and_faces_shrink_with_the_picture(data):
 
 
 def test_a_background_keeps_nothing_of_the_hand(data):
-    frame = read_material(data, LeftOut(), SETTINGS, 0).frames[0]
+    frame = read_material(data, LeftOut(), 0).frames[0]
     assert frame.image[60:90, 110:140].mean() > 250
     assert without_hands(frame)[60:90, 110:140].mean() < 200

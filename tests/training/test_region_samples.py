@@ -6,9 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.training.nets.locator_samples import LocatorSamples, LocatorSampling, make_targets, warp
-from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, target_edges
-from lightgesture.training.pictures.photometric import PhotometricSettings, photometric
+from lightgesture.training.nets.locator_samples import LocatorSamples, make_targets, warp
+from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, hard_regions, target_edges
+from lightgesture.training.pictures import light
+from lightgesture.training.pictures.light import photometric
 from lightgesture.training.regions.trees import BoxedPicture
 
 
@@ -22,7 +23,7 @@ def a_picture(boxes=((120, 80, 60, 80),)):
 @pytest.mark.parametrize("seed", range(12))
 def test_a_drawn_ellipse_stays_in_its_box(seed):
     rng = np.random.default_rng(seed)
-    image, hands, _ = warp(a_picture(), rng, (0.6, 1.5), LocatorSampling())
+    image, hands, _ = warp(a_picture(), rng, (0.6, 1.5))
     x, y, width, height = cv2.boundingRect((image[..., 0] > 127).astype(np.uint8))
     seen = np.clip(hands[0], 0, (160, 120, 160, 120))
     assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=2.0)
@@ -34,7 +35,7 @@ def test_boxes_and_pictures_do_not_drift_apart():
     square[80:160, 120:180] = 255
     picture, offsets = replace(a_picture(), image=square), []
     for seed in range(40):
-        image, hands, _ = warp(picture, np.random.default_rng(seed), (0.6, 1.5), LocatorSampling())
+        image, hands, _ = warp(picture, np.random.default_rng(seed), (0.6, 1.5))
         corners = hands[0]
         if corners.min() < 3 or corners[2] > 157 or corners[3] > 117:
             continue  # the border may continue what it cuts
@@ -69,9 +70,7 @@ def test_samples_repeat_for_a_seed(seed):
 
 
 def test_targets_are_hottest_in_the_middle_and_measure_to_the_edges():
-    maps = make_targets(
-        np.array([[40, 20, 80, 60]], np.float32), np.zeros((0, 4), np.float32), False, LocatorSampling()
-    )
+    maps = make_targets(np.array([[40, 20, 80, 60]], np.float32), np.zeros((0, 4), np.float32), False)
     row, column = np.unravel_index(maps.heat[0].argmax(), maps.heat[0].shape)
     assert maps.heat[0].max() == 1
     x, y = (column + 0.5) * 4, (row + 0.5) * 4
@@ -91,26 +90,25 @@ def test_edges_of_a_window_go_round_the_turned_hand(turn, flip):
 
 
 def test_another_light_repeats_for_a_seed():
-    first, again = (
-        photometric(a_picture().image, np.random.default_rng(2), True, PhotometricSettings()) for _ in "ab"
-    )
+    first, again = (photometric(a_picture().image, np.random.default_rng(2), True) for _ in "ab")
     np.testing.assert_array_equal(first, again)
     assert first.dtype == np.uint8
 
 
-def test_without_any_change_the_light_stays_and_each_change_is_felt():
+def test_without_any_change_the_light_stays_and_each_change_is_felt(monkeypatch):
     picture = np.clip(a_picture().image, 90, 200)
-    shares = ("water", "dark", "gamma", "balance", "contrast", "grey", "blurred", "noisy")
-    still = PhotometricSettings(**dict.fromkeys(shares, 0.0))
-    kept = photometric(picture, np.random.default_rng(0), True, still)
-    np.testing.assert_allclose(kept.astype(int), picture, atol=1)
+    shares = ("WATER", "DARK", "GAMMA", "BALANCE", "CONTRAST", "GREY", "BLURRED", "NOISY")
+
+    def changed(image, in_air, **given):
+        for share in shares:
+            monkeypatch.setattr(light, f"{share}_SHARE", given.get(share, 0.0))
+        return photometric(image, np.random.default_rng(0), in_air).astype(int)
+
+    np.testing.assert_allclose(changed(picture, True), picture, atol=1)
     coloured = picture * np.array([1, 0, 1], np.uint8)
     for share in shares:
-        changed = photometric(coloured, np.random.default_rng(0), True, replace(still, **{share: 1.0}))
-        assert np.abs(changed.astype(int) - coloured).max() > 2, share
-    dry = replace(still, water=0.5, dark=0.5)
-    composed = photometric(picture, np.random.default_rng(0), False, dry)
-    np.testing.assert_allclose(composed.astype(int), picture, atol=1)
+        assert np.abs(changed(coloured, True, **{share: 1.0}) - coloured).max() > 2, share
+    np.testing.assert_allclose(changed(picture, False, WATER=0.5, DARK=0.5), picture, atol=1)
 
 
 @pytest.mark.slow
@@ -118,7 +116,6 @@ def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
     pytest.importorskip("torch")
     from lightgesture.training.nets.locator import train_locator
     from lightgesture.training.nets.refiner import train_refiner
-    from lightgesture.training.regions.hard_regions import hard_regions
 
     pictures, empty, said = [a_picture()], [a_picture(())], []
     locator = train_locator(

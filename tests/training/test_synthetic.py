@@ -4,18 +4,14 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
+from lightgesture.synth import crops
 from lightgesture.training.pictures.augment import AugmentSettings
 from lightgesture.training.pool.patch_kinds import rendered_hands
 
 
 @pytest.fixture(autouse=True)
 def _few_backdrops(monkeypatch):
-    """One room and one dive, which take most of the time."""
-    from dataclasses import replace
-
-    from lightgesture.training.pool import patch_kinds
-
-    monkeypatch.setattr(patch_kinds, "CROPS", replace(patch_kinds.CROPS, backdrops=1))
+    monkeypatch.setattr(crops, "BACKDROPS", 1)
 
 
 def _samples(seed, count=12):

@@ -14,7 +14,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
-from lightgesture.web import WebListener, WebSettings
+from lightgesture.web import WebListener, board, listener, server
 
 AT = {"source": "dive.mp4", "frame": 3, "time_s": 0.1}
 HAND = Hand(side="right", token="5", confidence=0.98, box=(8, 8, 20, 20), track=1, reason=None)
@@ -50,19 +50,22 @@ def rejected(text="STOP EXEC 5 GO", detail="no program 5"):
 
 
 @pytest.fixture
-def serve():
-    """Starts pages, and stops them after the test."""
+def serve(monkeypatch):
+    """Starts pages, and stops them after the test; limits: constants of the server, in small letters."""
     started = []
 
-    def start(host="127.0.0.1", draw=None, **settings):
-        listener = WebListener(0, host, draw, WebSettings(beat_s=0.2, **settings))
-        listener.start()
-        started.append(listener)
-        return listener
+    def start(host="127.0.0.1", draw=None, **limits):
+        for name, value in {"beat_s": 0.2, **limits}.items():
+            place = next(module for module in (server, listener, board) if hasattr(module, name.upper()))
+            monkeypatch.setattr(place, name.upper(), value)
+        page = WebListener(0, host, draw)
+        page.start()
+        started.append(page)
+        return page
 
     yield start
-    for listener in started:
-        listener.stop()
+    for page in started:
+        page.stop()
 
 
 def port_of(listener):

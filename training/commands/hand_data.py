@@ -2,6 +2,8 @@
 
 import argparse
 
+from lightgesture.config.parsers import whole
+
 
 def add_data_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare them."""
@@ -32,13 +34,5 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
         help="source of the manifest (column set) that is left out; repeatable",
     )
     parser.add_argument(
-        "--seed", type=count, default=0, metavar="N", help="of all that is drawn (default: 0)"
+        "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default: 0)"
     )
-
-
-def count(text: str) -> int:
-    """A whole number from 0; ValueError for another text."""
-    number = int(text)
-    if number < 0:
-        raise ValueError
-    return number

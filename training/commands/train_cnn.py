@@ -5,9 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lightgesture.config.parsers import whole
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.training.commands.hand_data import add_data_arguments, count
+from lightgesture.training.commands.hand_data import add_data_arguments
 from lightgesture.training.commands.train import model_path
 
 if TYPE_CHECKING:
@@ -31,14 +32,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--outline", action="store_true", help="let the net look at the numbers of the hand's outline, too"
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 60000)")
+    parser.add_argument("--steps", type=whole, metavar="N", help="of the training (default: 60000)")
     parser.add_argument(
         "--teachers",
-        type=count,
+        type=whole,
         metavar="N",
         help="larger nets that are learnt from; 0: learn from the labels alone (default: 2)",
     )
-    parser.add_argument("--teacher-steps", type=count, metavar="N", help="of each of these (default: 4000)")
+    parser.add_argument("--teacher-steps", type=whole, metavar="N", help="of each of these (default: 4000)")
     parser.add_argument(
         "--precision",
         choices=PRECISIONS,
@@ -48,16 +49,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--copies",
-        type=count,
+        type=whole,
         metavar="N",
         help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
     )
     parser.add_argument(
-        "--synthetic", type=count, metavar="N", help="rendered hands beside the real ones (default: 12000)"
+        "--synthetic", type=whole, metavar="N", help="rendered hands beside the real ones (default: 12000)"
     )
     parser.add_argument(
         "--jobs",
-        type=count,
+        type=whole,
         default=1,
         metavar="N",
         help="processes that draw, and larger nets that learn at a time (default: 1); changes nothing else",

@@ -4,9 +4,10 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
+from lightgesture.config.parsers import whole
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.training.commands.hand_data import add_data_arguments, count
+from lightgesture.training.commands.hand_data import add_data_arguments
 from lightgesture.training.commands.train import model_path
 
 
@@ -15,7 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_data_arguments(parser)
     parser.add_argument(
         "--synthetic",
-        type=count,
+        type=whole,
         default=0,
         metavar="N",
         help="rendered hands beside the real ones, or alone without --data (default: 0)",
@@ -23,20 +24,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
     parser.add_argument(
         "--copies",
-        type=count,
+        type=whole,
         metavar="N",
         help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
     )
     parser.add_argument(
         "--centres",
-        type=count,
+        type=whole,
         metavar="N",
         help="vectors of the machine (default: 2000); size grows with them",
     )
-    parser.add_argument("--steps", type=count, metavar="N", help="of the training (default: 40000)")
+    parser.add_argument("--steps", type=whole, metavar="N", help="of the training (default: 40000)")
     parser.add_argument(
         "--jobs",
-        type=count,
+        type=whole,
         default=1,
         metavar="N",
         help="processes that draw (default: 1); changes nothing else",

@@ -1,11 +1,13 @@
 """The layers of the small nets, as nodes from which both torch and the board build them."""
 
+from collections.abc import Mapping, Sequence
+
 from lightgesture.features.find import locator, refiner
-from lightgesture.features.net.network import Node, Shape
+from lightgesture.features.net.network import WEIGHTED, Node, Shape, infer_shapes, taps
 from lightgesture.models import cnn
 
 LOCATOR_INPUT: Shape = (128, 160, 3)
-"""The working picture of 160 × 120, filled up to multiples of 16 as `features.locator` does."""
+"""The working picture of 160 × 120, filled up to multiples of 16 as `features.find.locator` does."""
 REFINER_INPUT: Shape = (32, 32, 4)
 """A window: standardised blue, green, red and luma."""
 LOCATOR_OUTPUTS = (locator.HEAT, locator.EDGES)
@@ -135,3 +137,14 @@ def teacher_nodes(classes: int, channels: tuple[int, int, int] = (32, 64, 112)) 
         Node("whole", "dense", ("coarse1",), 128, activation="relu6"),
         Node(cnn.SCORES, "dense", ("whole",), classes),
     )
+
+
+def multiply_adds(inputs: Mapping[str, Shape], nodes: Sequence[Node]) -> int:
+    """Products that the weighted layers sum for one picture."""
+    shapes = infer_shapes(inputs, nodes)
+    total = 0
+    for node in nodes:
+        if node.op in WEIGHTED:
+            height, width, channels = shapes[node.name]
+            total += height * width * channels * taps(node, shapes[node.inputs[0]])
+    return total

@@ -1,6 +1,5 @@
 """From a manifest to a hand net and its card: the training of the CNN from end to end."""
 
-import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, replace
@@ -13,11 +12,10 @@ from numpy.typing import NDArray
 from lightgesture._version import __version__
 from lightgesture.features.outline.contours import contour_length
 from lightgesture.models import in_order
-from lightgesture.models.archive import write_file
 from lightgesture.models.calibration import fit_temperature, softmax
 from lightgesture.models.cnn import CnnClassifier, CnnModel
-from lightgesture.models.cnn_file import write_cnn_model
 from lightgesture.training.card import held_out_section, make_card
+from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.pool.kept_sources import LEAST_FITTED, held_out_hands, kept_out
@@ -82,7 +80,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     need_torch()
     import torch
 
-    from lightgesture.features.net.nodes import multiply_adds
+    from lightgesture.training.nets.architectures import multiply_adds
 
     started = time.monotonic()
     rows = read_rows(training.data, training.without)
@@ -128,7 +126,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
         },
     }
     write_cnn_model(model, out)
-    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    write_json(card, out.with_suffix(".json"))
     return card
 
 

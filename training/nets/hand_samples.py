@@ -3,11 +3,12 @@
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.standardise import StandardSettings
+from lightgesture.features.standardise import EVENNESS, LARGEST
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
 
@@ -17,13 +18,10 @@ Random = np.random.Generator
 _ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))
 
 
-@dataclass(frozen=True, slots=True)
-class HandSampling:
-    """What becomes of a patch each time it is seen. erased: share of patches of which a part is covered, 0 to 1.
-    largest: side of that part over the patch's, 0 to 1."""
-
-    erased: float = 0.2
-    largest: float = 0.4
+ERASED_SHARE: Final = 0.2
+"""Of patches, those of which a part is covered."""
+LARGEST_ERASED: Final = 0.4
+"""Side of that part over the patch's."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,12 +37,11 @@ class HandBatch:
 
 def standardised(patches: NDArray[np.uint8]) -> Float:
     """What `features.standardise.channel_tables` makes of each patch, (n, h, w, 3), for many at once."""
-    settings = StandardSettings()
     roots = _ROOTS[patches]
     mean = roots.mean(axis=(1, 2), keepdims=True)
     variance = np.square(roots).mean(axis=(1, 2), keepdims=True) - np.square(mean)
-    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(settings.evenness))
-    return np.asarray(np.clip(values, -settings.largest, settings.largest), np.float32)
+    values = (roots - mean) / (np.sqrt(np.maximum(variance, 0.0)) + np.float32(EVENNESS))
+    return np.asarray(np.clip(values, -LARGEST, LARGEST), np.float32)
 
 
 class HandSamples:
@@ -56,10 +53,9 @@ class HandSamples:
         chosen: NDArray[np.bool_],
         classes: Sequence[str],
         margin: int,
-        settings: HandSampling | None = None,
     ) -> None:
         """chosen: bool (n,), of the pool. margin: pixels by which a patch may be shifted each way."""
-        self._pool, self._margin, self._settings = pool, margin, settings or HandSampling()
+        self._pool, self._margin = pool, margin
         self._answers: NDArray[np.float16] | None = None
         self.classes = tuple(classes)
         self._rows = np.flatnonzero(chosen)
@@ -112,7 +108,7 @@ class HandSamples:
 
     def _erase(self, seen: Float, random: Random) -> None:
         size = seen.shape[1]
-        for number in np.flatnonzero(random.random(len(seen)) < self._settings.erased):
-            height, width = random.integers(2, max(3, round(self._settings.largest * size)), 2)
+        for number in np.flatnonzero(random.random(len(seen)) < ERASED_SHARE):
+            height, width = random.integers(2, max(3, round(LARGEST_ERASED * size)), 2)
             top, left = random.integers(size - height + 1), random.integers(size - width + 1)
             seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)

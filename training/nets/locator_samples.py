@@ -1,16 +1,17 @@
 """Samples for the locator: whole pictures, moved and in another light, with the maps that the net is to give."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.find.peaks import STRIDE
+from lightgesture.features.find.locator import STRIDE
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Box, Image
-from lightgesture.training.pictures.photometric import PhotometricSettings, photometric
+from lightgesture.training.pictures.light import photometric
 from lightgesture.training.regions.trees import BoxedPicture
 
 Float = NDArray[np.float32]
@@ -21,30 +22,27 @@ FILLED = 128
 """Its height filled up to a multiple of 16."""
 
 
-@dataclass(frozen=True, slots=True)
-class LocatorSampling:
-    """What is drawn.
-
-    real, empty: shares of whole frames and of water without a hand; the rest is composed. scales: range of the size for
-    each kind, 1 fills the working picture. turned: share of turned pictures; turn_deg: their standard deviation.
-    stretch: standard deviation of the logarithm of the aspect. least_visible: share of a hand that must be inside to
-    be learnt. least_side: working pixels, likewise. spread: standard deviation of a heat spot over the box's side.
-    near: heat above which a cell learns the box.
-    """
-
-    real: float = 0.38
-    empty: float = 0.12
-    real_scale: tuple[float, float] = (0.6, 1.5)
-    empty_scale: tuple[float, float] = (0.7, 2.2)
-    composed_scale: tuple[float, float] = (0.75, 1.5)
-    turned: float = 0.4
-    turn_deg: float = 8.0
-    stretch: float = 0.06
-    least_visible: float = 0.55
-    least_side: float = 5.0
-    spread: float = 0.18
-    near: float = 0.45
-    light: PhotometricSettings = field(default_factory=PhotometricSettings)
+REAL_SHARE: Final = 0.38
+EMPTY_SHARE: Final = 0.12
+"""Of samples, those of whole frames and of water without a hand; the rest is composed."""
+REAL_SCALE: Final = (0.6, 1.5)
+EMPTY_SCALE: Final = (0.7, 2.2)
+COMPOSED_SCALE: Final = (0.75, 1.5)
+"""Range of the size of each kind; 1 fills the working picture."""
+TURNED_SHARE: Final = 0.4
+"""Of samples, those that are turned."""
+TURN_DEG: Final = 8.0
+"""Their standard deviation."""
+STRETCH: Final = 0.06
+"""Standard deviation of the logarithm of the aspect."""
+LEAST_VISIBLE: Final = 0.55
+"""Share of a hand that must be inside to be learnt."""
+LEAST_SIDE: Final = 5.0
+"""Side of a hand that is learnt, working pixels."""
+SPREAD: Final = 0.18
+"""Standard deviation of a heat spot over the box's side."""
+NEAR: Final = 0.45
+"""Heat above which a cell learns the box."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,15 +56,13 @@ class Targets:
     box_weight: Float
 
 
-def warp(
-    picture: BoxedPicture, rng: Random, scales: tuple[float, float], settings: LocatorSampling
-) -> tuple[Image, Float, Float]:
+def warp(picture: BoxedPicture, rng: Random, scales: tuple[float, float]) -> tuple[Image, Float, Float]:
     """A working picture of it, with the corners (x0, y0, x1, y1) of hands and faces, (n, 4) each."""
     image = picture.image
     height, width = image.shape[:2]
     scale = min(WIDTH / width, HEIGHT / height) * float(np.exp(rng.uniform(*np.log(scales))))
-    turn = np.deg2rad(rng.normal(0, settings.turn_deg)) if rng.random() < settings.turned else 0.0
-    stretch = float(np.exp(rng.normal(0, settings.stretch)))
+    turn = np.deg2rad(rng.normal(0, TURN_DEG)) if rng.random() < TURNED_SHARE else 0.0
+    stretch = float(np.exp(rng.normal(0, STRETCH)))
     flip = -1.0 if rng.random() < 0.5 else 1.0
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     linear = rotation @ np.diag([scale * stretch * flip, scale / stretch])
@@ -109,7 +105,7 @@ def moved(boxes: Sequence[Box], linear: NDArray[np.float64], shift: NDArray[np.f
     return np.concatenate([centres - reach, centres + reach], axis=1).astype(np.float32)
 
 
-def make_targets(hands: Float, faces: Float, all_faces: bool, settings: LocatorSampling) -> Targets:
+def make_targets(hands: Float, faces: Float, all_faces: bool) -> Targets:
     """Maps for corners (n, 4). Where not all faces are known, only cells round the known ones and on hands count."""
     rows, columns = FILLED // STRIDE, WIDTH // STRIDE
     maps = Targets(
@@ -127,12 +123,12 @@ def make_targets(hands: Float, faces: Float, all_faces: bool, settings: LocatorS
         area, whole = _area(seen), _area(corners)
         if area <= 0:
             continue
-        if area < settings.least_visible * whole or area < settings.least_side**2:
+        if area < LEAST_VISIBLE * whole or area < LEAST_SIDE**2:
             left, top, right, bottom = (seen / STRIDE).astype(int)
             maps.weight[0, top : bottom + 1, left : right + 1] = 0
             continue
-        spot = _spot(maps.heat[0], seen, x, y, settings.spread)
-        near = (spot > best) & (spot > settings.near)
+        spot = _spot(maps.heat[0], seen, x, y)
+        near = (spot > best) & (spot > NEAR)
         np.maximum(best, spot, out=best)
         distances = np.stack([x - seen[0], y - seen[1], seen[2] - x, seen[3] - y])
         maps.box[:, near] = distances[:, near]
@@ -141,7 +137,7 @@ def make_targets(hands: Float, faces: Float, all_faces: bool, settings: LocatorS
     for corners in faces:
         seen = np.clip(corners, 0, limits)
         if _area(seen) >= 0.5 * _area(corners) > 0:
-            spot = _spot(maps.heat[1], seen, x, y, settings.spread)
+            spot = _spot(maps.heat[1], seen, x, y)
             maps.weight[1][spot > 0.01] = 1
     maps.box_weight[maps.box.min(axis=0) <= 0] = 0
     return maps
@@ -151,10 +147,10 @@ def _area(corners: Float) -> float:
     return float(max(corners[2] - corners[0], 0) * max(corners[3] - corners[1], 0))
 
 
-def _spot(heat: Float, corners: Float, x: Float, y: Float, spread: float) -> Float:
+def _spot(heat: Float, corners: Float, x: Float, y: Float) -> Float:
     """Draw a Gaussian of height 1 at the middle of a box into `heat`; the Gaussian alone."""
     middle = (corners[:2] + corners[2:]) / 2
-    wide, tall = np.maximum(spread * (corners[2:] - corners[:2]), 0.45 * STRIDE)
+    wide, tall = np.maximum(SPREAD * (corners[2:] - corners[:2]), 0.45 * STRIDE)
     spot = np.exp(-((x - middle[0]) ** 2 / (2 * wide**2) + (y - middle[1]) ** 2 / (2 * tall**2)))
     column, row = (middle / STRIDE).astype(int)
     spot[min(row, heat.shape[0] - 1), min(column, heat.shape[1] - 1)] = 1
@@ -170,24 +166,22 @@ class LocatorSamples:
         frames: Sequence[BoxedPicture],
         empty: Sequence[BoxedPicture],
         composed: Sequence[BoxedPicture],
-        settings: LocatorSampling | None = None,
     ) -> None:
         """Each of the three holds at least one picture."""
         self._frames, self._empty, self._composed = frames, empty, composed
-        self._settings = settings or LocatorSampling()
 
     def draw(self, rng: Random) -> tuple[Float, Targets]:
         """Standardised picture, float32 (128, 160, 3), and its targets."""
-        settings, kind = self._settings, rng.random()
-        pictures, scales = self._composed, settings.composed_scale
-        in_air = kind < settings.real
+        kind = rng.random()
+        pictures, scales = self._composed, COMPOSED_SCALE
+        in_air = kind < REAL_SHARE
         if in_air:
-            pictures, scales = self._frames, settings.real_scale
-        elif kind < settings.real + settings.empty:
-            pictures, scales = self._empty, settings.empty_scale
+            pictures, scales = self._frames, REAL_SCALE
+        elif kind < REAL_SHARE + EMPTY_SHARE:
+            pictures, scales = self._empty, EMPTY_SCALE
         picture = pictures[int(rng.integers(len(pictures)))]
-        image, hands, faces = warp(picture, rng, scales, settings)
-        image = photometric(image, rng, in_air, settings.light)
+        image, hands, faces = warp(picture, rng, scales)
+        image = photometric(image, rng, in_air)
         seen = np.zeros((FILLED, WIDTH, 3), np.float32)
         seen[:HEIGHT] = cv2.LUT(image, channel_tables(image))
-        return seen, make_targets(hands, faces, picture.all_faces, settings)
+        return seen, make_targets(hands, faces, picture.all_faces)

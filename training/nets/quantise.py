@@ -7,13 +7,13 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from lightgesture.features.net.file import LARGEST_WEIGHT, check_network
 from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, Weights
+from lightgesture.training.nets.flatbuffer import with_litert
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 Range = tuple[float, float]
 
-LARGEST_WEIGHT = 127
-"""Weights are symmetric, so -128 is not used."""
 LEAST_SCALE = 1e-8
 """Of the weights of a channel that training has emptied."""
 
@@ -21,7 +21,7 @@ LEAST_SCALE = 1e-8
 def quantise(
     module: TorchNetwork, batches: Iterable[Mapping[str, Tensor]], inputs: Mapping[str, Range]
 ) -> IntegerNetwork:
-    """The network in integers.
+    """The network in integers, with its `.tflite` file.
 
     batches: typical inputs, from which the range of every tensor is measured. inputs: the range of each input,
     which is known. Every range is widened to hold 0, which is what padding stands for.
@@ -43,8 +43,8 @@ def quantise(
         elif node.name in module.layers:
             weights[node.name] = _weights(module, node, scales[node.inputs[0]].scale)
     network = IntegerNetwork(module.inputs, module.nodes, module.outputs, weights, scales)
-    network.check()
-    return network
+    check_network(network)
+    return with_litert(network)
 
 
 def _quantisation(low: float, high: float) -> Quantisation:
@@ -53,7 +53,7 @@ def _quantisation(low: float, high: float) -> Quantisation:
 
 
 def folded(module: TorchNetwork, node: Node) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Weights (in the layout of `features.network.Weights`) and biases with the batch normalisation in them."""
+    """Weights (in the layout of `features.net.network.Weights`) and biases with the batch normalisation in them."""
     layer = module.layers[node.name]
     assert isinstance(layer, nn.Conv2d | nn.Linear)
     weights = layer.weight.detach()

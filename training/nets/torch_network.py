@@ -1,4 +1,4 @@
-"""A network of `features.network` nodes as a torch module, for training. Needs torch."""
+"""A network of `features.net.network` nodes as a torch module, for training. Needs torch."""
 
 from collections.abc import Mapping, Sequence
 

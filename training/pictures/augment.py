@@ -7,6 +7,7 @@ bright window, and shift its box as a selector would.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Final
 
 import cv2
 import numpy as np
@@ -23,35 +24,38 @@ MIRRORED_TOKENS = {"left": "right", "right": "left"}
 Random = np.random.Generator
 
 
+CANVAS: Final = 96
+"""Side of a copy, pixels."""
+REACH: Final = 1.7
+"""Side of the canvas over the longer side of the hand's box, large enough for a shifted and enlarged box."""
+NARROWEST: Final = 0.6
+"""Least factor by which a copy's width shrinks, see `AugmentSettings.narrowed`."""
+FINGER_WIDTH: Final = 0.3
+"""Of the drawn mask over the palm's length; wider keeps a rim of the old background, narrower cuts fingers."""
+
+
 @dataclass(frozen=True, slots=True)
 class AugmentSettings:
-    """How far copies go; shares are probabilities per copy, 0 to 1.
+    """How far copies go."""
 
-    canvas: side of a copy in pixels. reach: side of the canvas over the longer side of the hand's box, large enough
-        for a shifted and enlarged box.
-    mirror: share of mirrored copies.
-    rotation: standard deviation, degrees. stretch: standard deviation of the logarithm of the aspect.
-    narrowed: share of copies whose width shrinks besides, as that of a hand turned about its long axis does, by a
-        factor down to `narrowest`.
-    shear: standard deviation, a share of the height.
-    background: share of copies before another background. finger_width: of the drawn mask over the palm's
-        length; wider keeps a rim of the old background, narrower cuts fingers.
-    shift, scale: standard deviation of the box's error, a share of its side and of its logarithm.
-    """
-
-    canvas: int = 96
-    reach: float = 1.7
     mirror: float = 0.5
+    """Share of mirrored copies, 0 to 1."""
     rotation: float = 14.0
+    """Standard deviation, degrees, 0 to 90."""
     stretch: float = 0.14
+    """Standard deviation of the logarithm of the aspect, 0 to 0.5."""
     narrowed: float = 0.0
-    narrowest: float = 0.6
+    """Share of copies, 0 to 1, whose width shrinks besides, as that of a hand turned about its long axis does."""
     shear: float = 0.10
+    """Standard deviation, a share of the height, 0 to 0.5."""
     background: float = 0.5
-    finger_width: float = 0.3
+    """Share of copies before another background, 0 to 1."""
     shift: float = 0.05
+    """Standard deviation of the error of the box's place, a share of its side, 0 to 0.3."""
     scale: float = 0.08
+    """Standard deviation of the logarithm of the error of the box's side, 0 to 0.3."""
     light: LightSettings = field(default_factory=LightSettings)
+    """Of copies."""
 
 
 MILD = AugmentSettings(
@@ -89,7 +93,7 @@ class _Canvas:
 def augment(
     hand: LabelledHand, backgrounds: Sequence[Image], settings: AugmentSettings, random: Random
 ) -> tuple[Image, Box, str]:
-    """One altered copy: picture, uint8 (canvas, canvas, 3), box of the hand in it with an error, token.
+    """One altered copy: picture, uint8 (CANVAS, CANVAS, 3), box of the hand in it with an error, token.
 
     backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand.
     """
@@ -101,7 +105,7 @@ def augment(
     mask = None
     image = canvas.image
     if canvas.landmarks is not None:
-        mask = hand_mask(canvas.landmarks, settings.canvas, settings.finger_width)
+        mask = hand_mask(canvas.landmarks, CANVAS, FINGER_WIDTH)
         if len(backgrounds) and random.random() < settings.background:
             image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
     image = relight(image, mask, settings.light, random)
@@ -136,15 +140,15 @@ def _turned(hand: LabelledHand, settings: AugmentSettings, random: Random) -> _C
     angle = np.deg2rad(random.normal(0.0, settings.rotation))
     aspect = np.exp(random.normal(0.0, settings.stretch))
     if settings.narrowed and random.random() < settings.narrowed:
-        aspect *= random.uniform(settings.narrowest, 1.0)
+        aspect *= random.uniform(NARROWEST, 1.0)
     shear = random.normal(0.0, settings.shear)
-    zoom = settings.canvas / (settings.reach * max(width, height))
+    zoom = CANVAS / (REACH * max(width, height))
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     matrix = zoom * turn @ np.array([[np.sqrt(aspect), shear], [0.0, 1 / np.sqrt(aspect)]])
     centre = np.array([x + width / 2, y + height / 2])
-    offset = settings.canvas / 2 - matrix @ centre
+    offset = CANVAS / 2 - matrix @ centre
     affine = np.hstack([matrix, offset[:, None]])
-    size = (settings.canvas, settings.canvas)
+    size = (CANVAS, CANVAS)
     image = cv2.warpAffine(hand.image, affine, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     corners = np.array([[x, y], [x + width, y], [x, y + height], [x + width, y + height]])
     landmarks = None if hand.landmarks is None else (hand.landmarks @ matrix.T + offset).astype(np.float32)

@@ -6,6 +6,7 @@ heads before real backgrounds, and the whole goes through water or into a dark, 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -13,39 +14,38 @@ from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image
 from lightgesture.training.pictures.cutouts import Cutout
-from lightgesture.training.pictures.decoys import lamp_spots, put_decoys, put_structures
-from lightgesture.training.pictures.drawn_body import draw_body
+from lightgesture.training.pictures.drawn import draw_body, lamp_spots, put_decoys, put_structures
+from lightgesture.training.pictures.light import attenuate, expose
 
 Float = NDArray[np.float32]
 
 
-@dataclass(frozen=True, slots=True)
-class CompositeSettings:
-    """What a composed picture looks like.
-
-    size: (width, height) in pixels. hand_height: least and most height of an upright hand over the picture's
-    height, drawn evenly in the logarithm. spread: distance of the hands from the body's axis in hand heights.
-    lift: height of the hands over the shoulders in hand heights. single, dark, water: shares of pictures with one
-    hand, in a dark room, under water. empty: of the others, those in which nobody shows a hand, in every second
-    because nobody is there. decoys: most objects of another picture, often red or skin-coloured, that stand about.
-    structures: share with poles, gates or boxes such as stand in test pools. lamps: share of dark pictures with a
-    spot of light on something else. bare_arms: share with bare forearms. other_hands: share of pictures whose two
-    hands show different signs.
-    """
-
-    size: tuple[int, int] = (320, 240)
-    hand_height: tuple[float, float] = (0.09, 0.42)
-    spread: tuple[float, float] = (0.8, 2.4)
-    lift: tuple[float, float] = (-0.5, 1.6)
-    single: float = 0.2
-    empty: float = 0.15
-    structures: float = 0.3
-    lamps: float = 0.4
-    dark: float = 0.3
-    water: float = 0.45
-    bare_arms: float = 0.35
-    other_hands: float = 0.5
-    decoys: int = 4
+SIZE: Final = (320, 240)
+"""Width and height of a composed picture, pixels."""
+HAND_HEIGHT: Final = (0.09, 0.42)
+"""Least and most height of an upright hand over the picture's height, drawn evenly in the logarithm."""
+SPREAD: Final = (0.8, 2.4)
+"""Distance of the hands from the body's axis in hand heights."""
+LIFT: Final = (-0.5, 1.6)
+"""Height of the hands over the shoulders in hand heights."""
+WATER_SHARE: Final = 0.45
+"""Of pictures, those under water."""
+DARK_SHARE: Final = 0.3
+"""Those in a dark room."""
+LAMP_SHARE: Final = 0.4
+"""Of dark pictures, those with a spot of light on something else."""
+SINGLE_SHARE: Final = 0.2
+"""Of pictures, those with one hand."""
+EMPTY_SHARE: Final = 0.15
+"""Of the others, those in which nobody shows a hand, in every second because nobody is there."""
+OTHER_HAND_SHARE: Final = 0.5
+"""Of pictures, those whose two hands show different signs."""
+BARE_ARM_SHARE: Final = 0.35
+"""Those with bare forearms."""
+STRUCTURE_SHARE: Final = 0.3
+"""Those with poles, gates or boxes such as stand in test pools."""
+DECOYS: Final = 4
+"""Most objects of another picture, often red or skin-coloured, that stand about."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,28 +94,6 @@ def _inside(value: float, size: int, margin: float) -> float:
     return min(max(value, margin), max(size - margin, margin))
 
 
-def attenuate(image: Float, rng: np.random.Generator) -> Float:
-    """Attenuation by colour and a veil of scattered light, with the terms of Akkaynak and Treibitz, "A revised
-    underwater image formation model", 2018: I = J exp(-beta_D z) + B (1 - exp(-beta_B z))."""
-    linear = np.power(image, 1.6)
-    attenuation = np.array([rng.uniform(0.05, 0.6), rng.uniform(0.03, 0.4), rng.uniform(0.5, 2.2)])
-    transmission = np.exp(-attenuation * rng.uniform(0.3, 1.6))
-    veil = np.array([rng.uniform(0.3, 0.9), rng.uniform(0.35, 0.9), rng.uniform(0.02, 0.3)])
-    veil *= rng.uniform(0.3, 1.0)
-    covered = 1.0 - np.exp(-rng.uniform(0.05, 1.1))
-    mixed = linear * transmission * (1.0 - covered) + veil * covered
-    return np.asarray(np.power(np.clip(mixed, 0.0, 1.0), 1 / 1.6), np.float32)
-
-
-def expose(image: Float, rng: np.random.Generator) -> Image:
-    """Blur, contrast and noise of a camera; the result in uint8."""
-    if rng.random() < 0.5:
-        image = np.asarray(cv2.GaussianBlur(image, (0, 0), rng.uniform(0.4, 1.8)), np.float32)
-    balance = rng.uniform(0.9, 1.1, 3)
-    noisy = image * balance * rng.uniform(0.75, 1.15) + rng.normal(0, rng.uniform(0.002, 0.02), image.shape)
-    return np.clip(noisy * 255.0, 0, 255).astype(np.uint8)
-
-
 class Composer:
     """Draws pictures without end from hands and backgrounds."""
 
@@ -124,16 +102,16 @@ class Composer:
         cutouts: Sequence[Cutout],
         waters: Sequence[Background],
         rooms: Sequence[Background],
-        settings: CompositeSettings | None = None,
+        size: tuple[int, int] = SIZE,
     ) -> None:
-        """cutouts: at least one. waters, rooms: backgrounds; either may be empty, not both."""
+        """cutouts: at least one. waters, rooms: backgrounds; either may be empty, not both. size: (width, height)."""
         self._by_source: dict[str, list[Cutout]] = {}
         for cutout in cutouts:
             self._by_source.setdefault(cutout.source, []).append(cutout)
         self._sources = sorted(self._by_source)
         self._waters = list(waters) or list(rooms)
         self._rooms = list(rooms) or list(waters)
-        self._settings = settings or CompositeSettings()
+        self._size = size
 
     def _background(
         self, pictures: Sequence[Background], rng: np.random.Generator, sources: set[str]
@@ -146,51 +124,46 @@ class Composer:
         share = rng.uniform(0.5, 1.0)
         wide, tall = max(2, int(width * share)), max(2, int(height * share))
         x, y = rng.integers(0, width - wide + 1), rng.integers(0, height - tall + 1)
-        part = cv2.resize(
-            picture[y : y + tall, x : x + wide], self._settings.size, interpolation=cv2.INTER_AREA
-        )
+        part = cv2.resize(picture[y : y + tall, x : x + wide], self._size, interpolation=cv2.INTER_AREA)
         if rng.random() < 0.5:
             part = part[:, ::-1]
         return np.asarray(part, np.float32) / np.float32(255.0)
 
     def _put_things(self, canvas: Float, unit: float, rng: np.random.Generator, sources: set[str]) -> None:
         """What stands about and is no hand, where a hand is `unit` pixels high; used pictures go into `sources`."""
-        put_decoys(
-            canvas, unit, self._settings.decoys, lambda: self._background(self._rooms, rng, sources), rng
-        )
-        if rng.random() < self._settings.structures:
+        put_decoys(canvas, unit, DECOYS, lambda: self._background(self._rooms, rng, sources), rng)
+        if rng.random() < STRUCTURE_SHARE:
             put_structures(canvas, unit, rng)
 
     def _hands(self, rng: np.random.Generator) -> list[Cutout]:
         """Two hands of one person, image-left first: the second is the mirror image of a left hand."""
         own = self._by_source[self._sources[rng.integers(len(self._sources))]]
         first = own[rng.integers(len(own))]
-        second = own[rng.integers(len(own))] if rng.random() < self._settings.other_hands else first
+        second = own[rng.integers(len(own))] if rng.random() < OTHER_HAND_SHARE else first
         hands = [first.mirrored(), second]
         return hands if rng.random() < 0.5 else [second.mirrored(), first]
 
     def compose(self, rng: np.random.Generator) -> Composite:
         """One picture; the same state of `rng` gives the same pixels on one machine and version."""
-        settings = self._settings
         draw = rng.random()
-        wet, dark = draw < settings.water, draw > 1.0 - settings.dark
+        wet, dark = draw < WATER_SHARE, draw > 1.0 - DARK_SHARE
         sources: set[str] = set()
         canvas = self._background(self._waters if wet else self._rooms, rng, sources)
         if not wet and rng.random() < 0.3:
             canvas = np.asarray(cv2.GaussianBlur(canvas, (0, 0), rng.uniform(0.5, 4.0)), np.float32)
-        width, height = settings.size
-        unit = float(height * np.exp(rng.uniform(*np.log(settings.hand_height))))
+        width, height = self._size
+        unit = float(height * np.exp(rng.uniform(*np.log(HAND_HEIGHT))))
         self._put_things(canvas, unit, rng, sources)
         axis = rng.uniform(0.3, 0.7) * width
         shoulder = rng.uniform(0.3, 0.85) * height
         hands = self._hands(rng)
         kept: list[Cutout | None] = [*hands]
-        if rng.random() < settings.single:
+        if rng.random() < SINGLE_SHARE:
             kept[0] = None
-        elif rng.random() < settings.empty:
+        elif rng.random() < EMPTY_SHARE:
             kept = [None, None]
-        lift = rng.uniform(*settings.lift)
-        spread = rng.uniform(*settings.spread)
+        lift = rng.uniform(*LIFT)
+        spread = rng.uniform(*SPREAD)
         places = []
         for sign in (-1.0, 1.0):
             x = axis + sign * unit * (spread + rng.normal(0, 0.2))
@@ -203,7 +176,7 @@ class Composer:
         skin = hands[0].image[opaque].mean(axis=0).astype(np.float32) / 255.0
         faces: tuple[Box, ...] = ()
         if chosen or rng.random() < 0.5:
-            faces = (draw_body(person, axis, shoulder, unit, wrists, skin, settings.bare_arms, rng),)
+            faces = (draw_body(person, axis, shoulder, unit, wrists, skin, BARE_ARM_SHARE, rng),)
         boxes, tokens = [], []
         for hand, place in chosen:
             box = _paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))
@@ -213,7 +186,7 @@ class Composer:
         if wet:
             person = self._submerge(person, canvas, rng)
         elif dark:
-            person = self._darken(person, canvas, rng, settings.lamps)
+            person = self._darken(person, canvas, rng)
         sources |= {hand.source for hand in hands}
         return Composite(expose(person, rng), tuple(boxes), tuple(tokens), faces, frozenset(sources))
 
@@ -229,12 +202,12 @@ class Composer:
         return np.asarray(background + changed * (tinted - background), np.float32)
 
     @staticmethod
-    def _darken(person: Float, background: Float, rng: np.random.Generator, lamps: float) -> Float:
+    def _darken(person: Float, background: Float, rng: np.random.Generator) -> Float:
         """A person against the light: far darker than lamps and windows, about as dark as the room."""
         changed = (np.abs(person - background).max(axis=2) > 1e-3).astype(np.float32)[..., None]
         light = rng.uniform(0.02, 0.22)
         room = np.power(background, 2.2) * rng.uniform(0.05, 0.3)
-        if rng.random() < lamps:
+        if rng.random() < LAMP_SHARE:
             room *= lamp_spots(room.shape[:2], rng)[..., None]
         glow = np.power(background, 2.2) * (background.min(axis=2, keepdims=True) > rng.uniform(0.6, 0.95))
         room = np.maximum(room, glow)

@@ -4,6 +4,7 @@ Cut-outs serve training and benchmarks on the user's own machine; no picture of 
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -18,21 +19,17 @@ PALM = (0, 1, 5, 9, 13, 17)
 """Landmarks round the palm."""
 
 
-@dataclass(frozen=True, slots=True)
-class CutoutSettings:
-    """How a hand is cut out.
-
-    finger_width: thickness of the drawn fingers over the palm's length (wrist to middle knuckle).
-    sure_width: the same for the core that is hand beyond doubt.
-    limit_width: the same for the zone beyond which nothing is hand.
-    iterations: of GrabCut, 1 to 5. feather: pixels of soft edge.
-    """
-
-    sure_width: float = 0.12
-    finger_width: float = 0.28
-    limit_width: float = 0.46
-    iterations: int = 3
-    feather: int = 3
+# Thickness of the drawn fingers over the palm's length (wrist to middle knuckle).
+SURE_WIDTH: Final = 0.12
+"""Of the core that is hand beyond doubt."""
+FINGER_WIDTH: Final = 0.28
+"""Of what is most likely hand."""
+LIMIT_WIDTH: Final = 0.46
+"""Of the zone beyond which nothing is hand."""
+ITERATIONS: Final = 3
+"""Of GrabCut."""
+FEATHER: Final = 3
+"""Pixels of soft edge."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,21 +79,14 @@ def draw_hand(shape: tuple[int, ...], landmarks: NDArray[np.float32], width: flo
     return mask
 
 
-def cut_out(
-    image: Image,
-    landmarks: NDArray[np.float32],
-    token: str,
-    source: str,
-    settings: CutoutSettings | None = None,
-) -> Cutout | None:
+def cut_out(image: Image, landmarks: NDArray[np.float32], token: str, source: str) -> Cutout | None:
     """The hand of a crop, or None where GrabCut (Rother, Kolmogorov and Blake, 2004) keeps too little.
 
     image: uint8 (h, w, 3) BGR. landmarks: float32 (21, 2) in its pixels.
     """
-    settings = settings or CutoutSettings()
-    limit = draw_hand(image.shape, landmarks, settings.limit_width)
-    likely = draw_hand(image.shape, landmarks, settings.finger_width)
-    sure = draw_hand(image.shape, landmarks, settings.sure_width)
+    limit = draw_hand(image.shape, landmarks, LIMIT_WIDTH)
+    likely = draw_hand(image.shape, landmarks, FINGER_WIDTH)
+    sure = draw_hand(image.shape, landmarks, SURE_WIDTH)
     labels = np.full(image.shape[:2], cv2.GC_BGD, np.uint8)
     labels[limit > 0] = cv2.GC_PR_BGD
     labels[likely > 0] = cv2.GC_PR_FGD
@@ -104,11 +94,11 @@ def cut_out(
     if (labels == cv2.GC_BGD).sum() < 50 or (labels == cv2.GC_FGD).sum() < 50:
         return None
     background, foreground = np.zeros((1, 65)), np.zeros((1, 65))
-    cv2.grabCut(image, labels, None, background, foreground, settings.iterations, cv2.GC_INIT_WITH_MASK)  # type: ignore[call-overload]
+    cv2.grabCut(image, labels, None, background, foreground, ITERATIONS, cv2.GC_INIT_WITH_MASK)  # type: ignore[call-overload]
     hand = np.where((labels == cv2.GC_FGD) | (labels == cv2.GC_PR_FGD), 255, 0).astype(np.uint8)
     if hand.mean() < 0.5 * likely.mean():
         return None
-    size = 2 * settings.feather - 1
+    size = 2 * FEATHER - 1
     alpha = cv2.GaussianBlur(hand, (size, size), 0).astype(np.float32) / 255.0
     x, y, width, height = cv2.boundingRect(hand)
     wrist = (float(landmarks[0, 0]), float(landmarks[0, 1]))

@@ -1,13 +1,14 @@
 """Training pictures of real hands on the synthetic diver, under water and in rooms, real and rendered."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from lightgesture.features.types import Box, Image
 from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
-from lightgesture.synth.camera import CameraLook, Sensor
+from lightgesture.synth.camera import CameraLook, photographed
 from lightgesture.synth.diver import ArmState, DiverState, rotation_matrix
 from lightgesture.synth.hand import HAND_LENGTH_MM
 from lightgesture.synth.raster import Float32
@@ -15,7 +16,19 @@ from lightgesture.synth.skeleton import HandPose
 from lightgesture.synth.specks import Bubbles, mirror_in_surface
 from lightgesture.synth.variety import ACCENTS, SUITS
 from lightgesture.synth.water import Water
-from lightgesture.training.pictures.composites import Background, Composer, Composite, CompositeSettings
+from lightgesture.training.pictures.composites import (
+    BARE_ARM_SHARE,
+    DARK_SHARE,
+    EMPTY_SHARE,
+    LAMP_SHARE,
+    OTHER_HAND_SHARE,
+    SINGLE_SHARE,
+    SIZE,
+    WATER_SHARE,
+    Background,
+    Composer,
+    Composite,
+)
 from lightgesture.training.pictures.cutouts import Cutout
 from lightgesture.training.pictures.real_hands import Shown, draw_diver, skin_colour
 from lightgesture.training.pictures.surroundings import (
@@ -37,32 +50,29 @@ HEAD_HALF_MM = (92.0, 125.0)
 """Half its width and height."""
 
 
-@dataclass(frozen=True, slots=True)
-class DiverSettings:
-    """Shares are 0 to 1.
-
-    drawn: pictures with the simple bodies of `Composer`, which know fewer restraints. rendered: of the others, those
-    before rendered water or rooms instead of real pictures. hand_height: of a stretched hand over the
-    picture's height, drawn evenly in the logarithm. wrist_mm: range of the left wrist in the body frame, each axis
-    (the right one likewise, mirrored). apart_mm: how far the two hands differ in it. before_face: pictures with the
-    hands before or beside the face. inward: hands whose thumb points to the body, as palms have it.
-    mirrored, bubbles: shares of the pictures under water with the diver's image in the surface, and with bubbles.
-    turn_deg: standard deviation of the hands' lean. body_deg: of the body's yaw, pitch and roll.
-    visible: least share of a hand inside the picture that is given a box.
-    """
-
-    drawn: float = 0.25
-    rendered: float = 0.4
-    hand_height: tuple[float, float] = (0.09, 0.45)
-    wrist_mm: tuple[tuple[float, float], ...] = ((110.0, 420.0), (-230.0, 230.0), (120.0, 330.0))
-    apart_mm: float = 35.0
-    before_face: float = 0.15
-    inward: float = 0.75
-    mirrored: float = 0.3
-    bubbles: float = 0.25
-    turn_deg: float = 10.0
-    body_deg: tuple[float, float, float] = (12.0, 6.0, 5.0)
-    visible: float = 0.67
+DRAWN_SHARE: Final = 0.25
+"""Of pictures, those with the simple bodies of `Composer`, which know fewer restraints."""
+RENDERED_SHARE: Final = 0.4
+"""Of the others, those before rendered water or rooms instead of real pictures."""
+HAND_HEIGHT: Final = (0.09, 0.45)
+"""Of a stretched hand over the picture's height, drawn evenly in the logarithm."""
+WRIST_MM: Final = ((110.0, 420.0), (-230.0, 230.0), (120.0, 330.0))
+"""Range of the left wrist in the body frame, each axis; the right one likewise, mirrored."""
+APART_MM: Final = 35.0
+"""How far the two hands differ in it, standard deviation."""
+BEFORE_FACE_SHARE: Final = 0.15
+"""Of pictures, those with the hands before or beside the face."""
+INWARD_SHARE: Final = 0.75
+"""Of hands, those whose thumb points to the body, as palms have it."""
+MIRRORED_SHARE: Final = 0.3
+BUBBLE_SHARE: Final = 0.25
+"""Of pictures under water, those with the diver's image in the surface, and those with bubbles."""
+TURN_DEG: Final = 10.0
+"""Lean of the hands, standard deviation."""
+BODY_DEG: Final = (12.0, 6.0, 5.0)
+"""Yaw, pitch and roll of the body, standard deviations."""
+LEAST_VISIBLE: Final = 0.67
+"""Share of a hand inside the picture from which it is given a box."""
 
 
 class DiverComposer(Composer):
@@ -76,32 +86,30 @@ class DiverComposer(Composer):
         cutouts: Sequence[Cutout],
         waters: Sequence[Background],
         rooms: Sequence[Background],
-        settings: CompositeSettings | None = None,
-        diver: DiverSettings | None = None,
+        size: tuple[int, int] = SIZE,
         seed: int = 0,
     ) -> None:
         """As `Composer`; seed: of the rendered surroundings, which are drawn here, once."""
-        super().__init__(cutouts, waters, rooms, settings)
-        self._diver = diver or DiverSettings()
-        self._surroundings = Surroundings(self._settings.size, np.random.default_rng(seed))
+        super().__init__(cutouts, waters, rooms, size)
+        self._surroundings = Surroundings(size, np.random.default_rng(seed))
 
     def compose(self, rng: np.random.Generator) -> Composite:
         """One picture; the same state of `rng` gives the same pixels on one machine and version."""
-        if rng.random() < self._diver.drawn:
+        if rng.random() < DRAWN_SHARE:
             return super().compose(rng)
-        width, height = self._settings.size
+        width, height = self._size
         draw = rng.random()
-        is_wet, is_dark = draw < self._settings.water, draw > 1.0 - self._settings.dark
+        is_wet, is_dark = draw < WATER_SHARE, draw > 1.0 - DARK_SHARE
         camera = Camera(float(rng.uniform(0.75, 1.1)) * width, (0.5 * width, 0.5 * height))
         state = self._state(camera, rng)
         sources: set[str] = set()
         scenery = self._scenery(is_wet, is_dark, float(state.position[2]) / 1000.0, rng, sources)
-        hands = self._pair(rng)
+        hands = self.draw_pair(rng)
         sources |= {hand.source for hand in hands.values()}
-        look = body_look(hands["left"], is_wet, self._settings.bare_arms, rng)
-        if rng.random() < self._settings.single:
+        look = body_look(hands["left"], is_wet, BARE_ARM_SHARE, rng)
+        if rng.random() < SINGLE_SHARE:
             del hands[SIDES[int(rng.integers(2))]]
-        elif rng.random() < self._settings.empty:
+        elif rng.random() < EMPTY_SHARE:
             if rng.random() < 0.5:
                 return Composite(photograph(scenery.picture, rng), (), (), (), frozenset(sources))
             hands.clear()
@@ -110,7 +118,7 @@ class DiverComposer(Composer):
         pasted, cover = draw_diver(picture, state, look, shown, camera, scenery.light, scenery.water)
         if scenery.water is not None:
             self._add_water_effects(picture, cover, state, camera, scenery.water, rng)
-        kept = [hand for hand in pasted if hand.visible >= self._diver.visible]
+        kept = [hand for hand in pasted if hand.visible >= LEAST_VISIBLE]
         return Composite(
             photograph(picture, rng),
             tuple(hand.box for hand in kept),
@@ -130,11 +138,11 @@ class DiverComposer(Composer):
     ) -> None:
         """Now and then the diver's image in the surface, and bubbles from the mouth, over a linear picture."""
         time_s = float(rng.uniform(2.0, 60.0))
-        if rng.random() < self._diver.mirrored:
+        if rng.random() < MIRRORED_SHARE:
             top = float(cover.max(axis=1).argmax())
             line = top - float(rng.uniform(-0.03, 0.1)) * cover.shape[0]
             mirror_in_surface(picture, cover, line, self._surroundings.ripples, time_s)
-        if rng.random() < self._diver.bubbles:
+        if rng.random() < BUBBLE_SHARE:
             bubbles = Bubbles(float(rng.uniform(8.0, 45.0)), camera, rng)
             mouth = to_camera(np.array([MOUTH]), rotation_matrix(state.rotation), state.position)[0]
             bubbles.draw(picture, time_s, mouth, water)
@@ -143,7 +151,7 @@ class DiverComposer(Composer):
         self, is_wet: bool, is_dark: bool, distance_m: float, rng: np.random.Generator, sources: set[str]
     ) -> Scenery:
         """Where the diver is: rendered or a real picture, some with things that stand about."""
-        if rng.random() < self._diver.rendered:
+        if rng.random() < RENDERED_SHARE:
             scenery = self._surroundings.dive(rng) if is_wet else self._surroundings.room(rng)
         else:
             coded = self._background(self._waters if is_wet else self._rooms, rng, sources)
@@ -155,13 +163,13 @@ class DiverComposer(Composer):
                 scenery = Scenery(picture, light_under_water(water, rng), water)
             else:
                 scenery = Scenery(picture, light_of_room(picture, rng), None)
-        return darken(scenery, rng, self._settings.lamps) if is_dark else scenery
+        return darken(scenery, rng, LAMP_SHARE) if is_dark else scenery
 
-    def _pair(self, rng: np.random.Generator) -> dict[str, Cutout]:
+    def draw_pair(self, rng: np.random.Generator) -> dict[str, Cutout]:
         """Two hands of one person by the diver's sides, tokens as the diver shows them."""
         own = self._by_source[self._sources[int(rng.integers(len(self._sources)))]]
         first = own[int(rng.integers(len(own)))]
-        is_other = rng.random() < self._settings.other_hands
+        is_other = rng.random() < OTHER_HAND_SHARE
         second = own[int(rng.integers(len(own)))] if is_other else first
         return {"right": self._turned(first, True, rng), "left": self._turned(second, False, rng)}
 
@@ -171,27 +179,27 @@ class DiverComposer(Composer):
             # A right hand is the mirror image of a left one that shows the same.
             return replace(cutout.mirrored(), token=cutout.token) if is_right else cutout
         # The thumb of most crops points to image right, which is inwards on a right hand.
-        is_inward = rng.random() < self._diver.inward
+        is_inward = rng.random() < INWARD_SHARE
         return cutout if is_inward == is_right else cutout.mirrored()
 
     def _state(self, camera: Camera, rng: np.random.Generator) -> DiverState:
         """Where diver and hands are, so that the hands have the wanted size and lie about the picture."""
-        diver, (width, height) = self._diver, self._settings.size
-        base = np.array([rng.uniform(*axis) for axis in diver.wrist_mm])
-        if rng.random() < diver.before_face:
+        width, height = self._size
+        base = np.array([rng.uniform(*axis) for axis in WRIST_MM])
+        if rng.random() < BEFORE_FACE_SHARE:
             base = np.array([rng.uniform(70.0, 140.0), rng.uniform(30.0, 160.0), rng.uniform(200.0, 300.0)])
         arms = []
         for sign in (1.0, -1.0):
-            wrist = (base + rng.normal(0.0, diver.apart_mm, 3)) * (sign, 1.0, 1.0)
-            turn = np.array([0.0, 0.0, rng.normal(0.0, diver.turn_deg)])
+            wrist = (base + rng.normal(0.0, APART_MM, 3)) * (sign, 1.0, 1.0)
+            turn = np.array([0.0, 0.0, rng.normal(0.0, TURN_DEG)])
             arms.append(ArmState(wrist, turn, NO_POSE))
-        share = float(np.exp(rng.uniform(*np.log(diver.hand_height))))
+        share = float(np.exp(rng.uniform(*np.log(HAND_HEIGHT))))
         depth = HAND_LENGTH_MM * camera.focal / (share * height)
         # The hands' middle goes anywhere in the inner part of the picture.
         x = rng.uniform(-0.22, 0.22) * width * depth / camera.focal
         y = rng.uniform(-0.2, 0.3) * height * depth / camera.focal - base[1] - 0.4 * HAND_LENGTH_MM
         position = np.array([x, y, depth + base[2]])
-        return DiverState(position, rng.normal(0.0, diver.body_deg), arms[0], arms[1])
+        return DiverState(position, rng.normal(0.0, BODY_DEG), arms[0], arms[1])
 
 
 def head_box(state: DiverState, camera: Camera) -> Box:
@@ -238,4 +246,4 @@ def photograph(picture: Float32, rng: np.random.Generator) -> Image:
         motion_px=float(rng.uniform(2.0, 4.0)) if rng.random() < 0.15 else 0.0,
         jpeg=int(rng.integers(35, 96)) if rng.random() < 0.5 else 0,
     )
-    return Sensor(look, (picture.shape[1], picture.shape[0]), rng, margin=0).expose(picture, 0, 0.0)
+    return photographed(picture, look, rng)

@@ -5,7 +5,7 @@ copies teach it to say `none`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Final
 
 import cv2
 import numpy as np
@@ -17,34 +17,26 @@ Random = np.random.Generator
 Float = NDArray[np.float32]
 
 
-@dataclass(frozen=True, slots=True)
-class HidingSettings:
-    """How hands are hidden.
-
-    cut: share that the picture's edge cuts, 0 to 1; the others are covered. least, most: of the box's extent that is
-    lost. skin: share of the covers that are as the hand itself, as an arm or a face in the same light is; the others
-    are pieces of other pictures. flattest, roundest: radius of a cover's rim over the box's longer side.
-    """
-
-    cut: float = 0.5
-    least: float = 0.35
-    most: float = 0.7
-    skin: float = 0.7
-    flattest: float = 3.0
-    roundest: float = 0.6
+CUT_SHARE: Final = 0.5
+"""Of hands, those that the picture's edge cuts; the others are covered."""
+LOST: Final = (0.35, 0.7)
+"""Least and most of the box's extent that is lost."""
+SKIN_SHARE: Final = 0.7
+"""Of covers, those that are as the hand itself, as an arm or a face in the same light is; the others are pieces of
+other pictures."""
+COVER_RADIUS: Final = (0.6, 3.0)
+"""Of a cover's rim over the box's longer side: the roundest and the flattest."""
 
 
-def hide(
-    image: Image, box: Box, others: Sequence[Image], settings: HidingSettings, random: Random
-) -> tuple[Image, Box]:
+def hide(image: Image, box: Box, others: Sequence[Image], random: Random) -> tuple[Image, Box]:
     """The picture without a part of its hand, and the box that a selector would give.
 
     others: pictures, at least a few pixels wide, of which covers are pieces.
     """
-    lost = random.uniform(settings.least, settings.most)
-    if random.random() < settings.cut:
+    lost = random.uniform(*LOST)
+    if random.random() < CUT_SHARE:
         return _cut(image, box, lost, int(random.integers(4)))
-    return _covered(image, box, others, lost, settings, random), box
+    return _covered(image, box, others, lost, random), box
 
 
 def _cut(image: Image, box: Box, lost: float, edge: int) -> tuple[Image, Box]:
@@ -75,19 +67,12 @@ def _cut(image: Image, box: Box, lost: float, edge: int) -> tuple[Image, Box]:
     return np.ascontiguousarray(image[top:bottom, left:right]), seen
 
 
-def _covered(
-    image: Image,
-    box: Box,
-    others: Sequence[Image],
-    lost: float,
-    settings: HidingSettings,
-    random: Random,
-) -> Image:
+def _covered(image: Image, box: Box, others: Sequence[Image], lost: float, random: Random) -> Image:
     """A disc comes in from a random direction and hides that share of the box's extent along it."""
     rows, columns = image.shape[:2]
     x, y, width, height = box
     longer = max(width, height)
-    radius = longer * np.exp(random.uniform(np.log(settings.roundest), np.log(settings.flattest)))
+    radius = longer * np.exp(random.uniform(*np.log(COVER_RADIUS)))
     angle = random.uniform(0.0, 2.0 * np.pi)
     across, down = np.cos(angle), np.sin(angle)
     extent = abs(across) * width + abs(down) * height
@@ -96,7 +81,7 @@ def _covered(
     down_of, across_of = np.mgrid[:rows, :columns].astype(np.float32)
     distance = np.hypot(across_of + 0.5 - centre_x, down_of + 0.5 - centre_y)
     cover = np.clip(radius - distance, 0.0, 1.0)[..., None].astype(np.float32)
-    if random.random() < settings.skin:
+    if random.random() < SKIN_SHARE:
         shade = (1.0 - random.uniform(0.0, 0.5) * np.clip(distance / radius, 0.0, 1.0) ** 4)[..., None]
         front = shade * _skin(image, box, random)
     else:

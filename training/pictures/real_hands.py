@@ -6,6 +6,7 @@ arithmetic is in linear light. For training and benchmarks on the user's own mac
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import cv2
 import numpy as np
@@ -27,19 +28,13 @@ STRETCHED_IN_PALMS = 2.28
 """The same for every shape with a stretched finger."""
 
 
-@dataclass(frozen=True, slots=True)
-class RealHandSettings:
-    """palm_mm: length of the palm of a person as large as the synthetic diver. wrist_deg: how far a hand leans
-    against its forearm, degrees. cuff_mm: from the wrist to where the body's own arm ends, less the 31 mm of its
-    rounded end: the arm reaches the wrist, because no forearm comes with the hand.
-    """
-
-    palm_mm: float = 92.0
-    wrist_deg: float = 32.0
-    cuff_mm: float = -28.0
-
-
-SETTINGS = RealHandSettings()
+PALM_MM: Final = 92.0
+"""Length of the palm of a person as large as the synthetic diver."""
+WRIST_DEG: Final = 32.0
+"""How far a hand leans against its forearm."""
+CUFF_MM: Final = -28.0
+"""From the wrist to where the body's own arm ends, less the 31 mm of its rounded end: the arm reaches the wrist,
+because no forearm comes with the hand."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +91,7 @@ def draw_diver(
     size = (picture.shape[1], picture.shape[0])
     rotation = rotation_matrix(state.rotation)
     arms = {"left": state.left, "right": state.right}
-    worn = replace(look, cuff_mm=SETTINGS.cuff_mm)
+    worn = replace(look, cuff_mm=CUFF_MM)
     wrists = (state.left.wrist, state.right.wrist)
     radiance, cover = render_body(worn, rotation, state.position, wrists, camera, size, light, water)
     picture *= 1.0 - cover[..., None]
@@ -104,7 +99,7 @@ def draw_diver(
     depth = {side: float(to_camera(arms[side].wrist[None], rotation, state.position)[0, 2]) for side in hands}
     laid: list[tuple[str, Float, float]] = []
     for side in sorted(hands, key=lambda name: -depth[name]):
-        place = _placement(arms[side], side, state, look.scale, camera)
+        place = _placement(arms[side], side, state, camera)
         layer, inside = _warp(hands[side], place, size, light_colour(light))
         seen = layer.radiance
         if water is not None:
@@ -137,10 +132,10 @@ class _Place:
     turn: float
 
 
-def _placement(arm: ArmState, side: str, state: DiverState, scale: float, camera: Camera) -> _Place:
+def _placement(arm: ArmState, side: str, state: DiverState, camera: Camera) -> _Place:
     sign = 1.0 if side == "left" else -1.0
-    shoulder = SHOULDER * scale * np.array([sign, 1.0, 1.0])
-    elbow = elbow_position(shoulder, arm.wrist, sign, scale)
+    shoulder = SHOULDER * np.array([sign, 1.0, 1.0])
+    elbow = elbow_position(shoulder, arm.wrist, sign)
     rotation = rotation_matrix(state.rotation)
     image, size = camera.project(to_camera(np.stack([arm.wrist, elbow]), rotation, state.position))
     towards = image[0] - image[1]
@@ -148,7 +143,7 @@ def _placement(arm: ArmState, side: str, state: DiverState, scale: float, camera
     # Positive roll leans the fingers to the thumb's side, which is inwards.
     wanted = -sign * float(arm.turn[2])
     lean = (wanted - forearm + 180.0) % 360.0 - 180.0
-    turn = forearm + float(np.clip(lean, -SETTINGS.wrist_deg, SETTINGS.wrist_deg))
+    turn = forearm + float(np.clip(lean, -WRIST_DEG, WRIST_DEG))
     return _Place((float(image[0, 0]), float(image[0, 1])), float(size[0]), turn)
 
 
@@ -156,7 +151,7 @@ def _matrix(cutout: Cutout, place: _Place) -> NDArray[np.float64]:
     _, y, width, height = cutout.box
     palm = height / HEIGHT_IN_PALMS.get(cutout.token, STRETCHED_IN_PALMS)
     # A hand that is much wider than high is not upright; its width then tells its size better.
-    scale = SETTINGS.palm_mm * place.px_per_mm / max(palm, width / 2.6)
+    scale = PALM_MM * place.px_per_mm / max(palm, width / 2.6)
     anchor = (cutout.wrist[0], min(cutout.wrist[1], float(y + height)))
     matrix = np.asarray(cv2.getRotationMatrix2D(anchor, -place.turn, scale), np.float64)
     matrix[:, 2] += np.array(place.wrist) - np.array(anchor)

@@ -1,21 +1,27 @@
 """Where composed divers are: rendered water and rooms, or real pictures with the light and water they imply."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.room import Room, RoomLook
-from lightgesture.synth.shading import Light
+from lightgesture.synth.shading import Light, daylight, triple
 from lightgesture.synth.textures import periodic_noise
-from lightgesture.synth.water import JERLOV_BGR, Water, make_water
-from lightgesture.training.pictures.decoys import lamp_spots
+from lightgesture.synth.water import JERLOV_BGR, Water, WaterRange, make_water
+from lightgesture.training.pictures.drawn import lamp_spots
 
 Random = np.random.Generator
 RIPPLES_SIZE = 256
 """Side of the tile of noise by which the surface breaks images, pixels."""
+COUNT: Final = 10
+"""Rendered waters and rooms each, drawn once."""
+MOMENTS: Final = 3
+"""Pictures of each water, seconds apart."""
+WATERS: Final = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (0.05, 0.6))
+"""Of the rendered waters."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,29 +33,13 @@ class Scenery:
     water: Water | None
 
 
-@dataclass(frozen=True, slots=True)
-class SurroundingsSettings:
-    """count: rendered waters and rooms each, drawn once. moments: pictures of each water, seconds apart.
-    depth_m, turbidity: ranges of the rendered waters, see `synth.water.make_water`; turbidity drawn evenly in the
-    logarithm.
-    """
-
-    count: int = 10
-    moments: int = 3
-    depth_m: tuple[float, float] = (0.5, 8.0)
-    turbidity: tuple[float, float] = (0.05, 0.6)
-
-
 class Surroundings:
     """Rendered places of one picture size (width, height), ready to be taken. ripples: noise of a moving surface."""
 
-    def __init__(
-        self, size: tuple[int, int], rng: Random, settings: SurroundingsSettings | None = None
-    ) -> None:
-        self._settings = settings or SurroundingsSettings()
-        self._dives = [self._dive(size, rng) for _ in range(self._settings.count)]
+    def __init__(self, size: tuple[int, int], rng: Random) -> None:
+        self._dives = [_dive(size, rng) for _ in range(COUNT)]
         self.ripples = periodic_noise(rng, RIPPLES_SIZE, 1.9)
-        self._rooms = [_room(size, rng) for _ in range(self._settings.count)]
+        self._rooms = [_room(size, rng) for _ in range(COUNT)]
 
     def dive(self, rng: Random) -> Scenery:
         """Rendered water, seen to either side."""
@@ -62,22 +52,18 @@ class Surroundings:
         picture, light = self._rooms[int(rng.integers(len(self._rooms)))]
         return Scenery(_either_side(picture, rng), light, None)
 
-    def _dive(self, size: tuple[int, int], rng: Random) -> tuple[list[Float32], Water]:
-        low, high = np.log(self._settings.turbidity)
-        water = make_water(
-            str(rng.choice(list(JERLOV_BGR)[:9])),
-            float(rng.uniform(*self._settings.depth_m)),
-            float(np.exp(rng.uniform(low, high))),
-        )
-        look = BackdropLook(
-            str(rng.choice(("sand", "tiles", "rocks", ""))),
-            float(rng.uniform(0.6, 4.0)),
-            float(rng.uniform(0.2, 0.9)) if rng.random() < 0.4 else 0.0,
-            float(rng.uniform(0.25, 0.65)),
-            caustic=float(rng.uniform(0.0, 0.9)),
-        )
-        backdrop = Backdrop(look, water, 0.9 * size[0], size, rng)
-        return [backdrop.frame(2.0 * moment) for moment in range(self._settings.moments)], water
+
+def _dive(size: tuple[int, int], rng: Random) -> tuple[list[Float32], Water]:
+    water = make_water(*WATERS.draw(rng))
+    look = BackdropLook(
+        str(rng.choice(("sand", "tiles", "rocks", ""))),
+        float(rng.uniform(0.6, 4.0)),
+        float(rng.uniform(0.2, 0.9)) if rng.random() < 0.4 else 0.0,
+        float(rng.uniform(0.25, 0.65)),
+        caustic=float(rng.uniform(0.0, 0.9)),
+    )
+    backdrop = Backdrop(look, water, 0.9 * size[0], size, rng)
+    return [backdrop.frame(2.0 * moment) for moment in range(MOMENTS)], water
 
 
 def _room(size: tuple[int, int], rng: Random) -> tuple[Float32, Light]:
@@ -101,13 +87,7 @@ def light_under_water(water: Water, rng: Random) -> Light:
     """Daylight from above and whatever side, scattered light from around."""
     strength = float(np.exp(rng.uniform(-0.6, 0.5)))
     side = float(rng.uniform(-0.7, 0.7))
-    return Light(
-        direction=(side, -0.85, float(rng.uniform(0.2, 0.8))),
-        key=_triple(water.light * np.float32(0.85 * strength)),
-        sky=_triple(water.light * np.float32(0.42 * strength)),
-        ground=_triple(water.veil * np.float32(0.7)),
-        shadow=0.45,
-    )
+    return daylight(water, (side, -0.85, float(rng.uniform(0.2, 0.8))), strength)
 
 
 def water_of_picture(picture: Float32, distance_m: float, rng: Random) -> Water:
@@ -142,9 +122,9 @@ def light_of_room(picture: Float32, rng: Random) -> Light:
             float(rng.uniform(-0.9, -0.1)),
             float(rng.uniform(0.2, 0.9)),
         ),
-        key=_triple(colour * level * share),
-        sky=_triple(colour * level * (1.0 - share)),
-        ground=_triple(colour * level * 0.5 * (1.0 - share)),
+        key=triple(colour * level * share),
+        sky=triple(colour * level * (1.0 - share)),
+        ground=triple(colour * level * 0.5 * (1.0 - share)),
     )
 
 
@@ -164,14 +144,10 @@ def darken(scenery: Scenery, rng: Random, lamps: float = 0.0) -> Scenery:
         np.where(glow, np.maximum(picture, np.float32(0.6)), dark).astype(np.float32),
         Light(
             light.direction,
-            key=_triple(np.array(light.key) * level),
-            sky=_triple(np.array(light.sky) * level),
-            ground=_triple(np.array(light.ground) * level),
+            key=triple(np.array(light.key) * level),
+            sky=triple(np.array(light.sky) * level),
+            ground=triple(np.array(light.ground) * level),
             shadow=light.shadow,
         ),
         scenery.water,
     )
-
-
-def _triple(values: NDArray[np.floating]) -> tuple[float, float, float]:
-    return float(values[0]), float(values[1]), float(values[2])

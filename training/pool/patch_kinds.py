@@ -14,13 +14,14 @@ from lightgesture.features.types import Image
 from lightgesture.models import CLASSES, NONE, TrainingSample
 from lightgesture.synth.crops import CropMaker, CropSettings
 from lightgesture.training.pictures.augment import (
+    CANVAS,
     MILD,
     MIRRORED_TOKENS,
     AugmentSettings,
     augment,
     shifted_box,
 )
-from lightgesture.training.pictures.hidden_hands import HidingSettings, hide
+from lightgesture.training.pictures.hidden_hands import hide
 from lightgesture.training.pictures.light import relight
 from lightgesture.training.pool.negatives import Scene, missed_hand, negatives, read_backgrounds, read_scenes
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
@@ -41,7 +42,6 @@ HIDDEN: Final = 0.5
 """Share of the rounds in which a copy of each hand is added of which too little is seen."""
 MISSED: Final = 0.3
 """Share of the rounds in which a box is laid beside each hand."""
-HIDING: Final = HidingSettings()
 CROPS: Final = CropSettings(yaw=28.0, pitch=18.0, roll=16.0, sideways=0.35, together=0.45)
 """How rendered hands vary: turned further than people turn their hands for a camera, because such views are rare among
 the pictures; a third of the rings are seen from the side, as divers show an ok to a camera, and nearly half of the
@@ -151,7 +151,7 @@ def _hidden(
     for hand in originals.hands[first:last]:
         if random.random() < HIDDEN:
             image, box, _ = augment(hand, pictures, settings.augment, random)
-            image, box = hide(image, box, pictures, HIDING, random)
+            image, box = hide(image, box, pictures, random)
             yield TrainingSample(
                 image=image, box=box, side=hand.side, token=NONE, source=hand.source, original=False
             )
@@ -226,7 +226,7 @@ def _relit(region: TrainingSample, settings: PoolSettings, random: Random) -> Tr
     rows, columns = region.image.shape[:2]
     left, top = max(0, x - reach), max(0, y - reach)
     part = region.image[top : min(rows, y + height + reach), left : min(columns, x + width + reach)]
-    scale = min(1.0, 1.5 * settings.augment.canvas / max(part.shape[:2]))
+    scale = min(1.0, 1.5 * CANVAS / max(part.shape[:2]))
     if scale < 1.0:
         part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8)
     box = (

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 
 from lightgesture.results.atomic import replacing
-from lightgesture.training.pictures.composites import Background, Composite, CompositeSettings
+from lightgesture.training.pictures.composites import SIZE, Background, Composite
 from lightgesture.training.pictures.cutouts import Cutout
 from lightgesture.training.pictures.diver_composites import DiverComposer
 from lightgesture.training.regions.trees import BoxedPicture
@@ -23,16 +23,16 @@ _worker: tuple[DiverComposer, int] | None = None
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ingredients:
-    """What a composer is made of; see `DiverComposer`."""
+    """What a composer is made of; see `DiverComposer`. size: (width, height) of its pictures."""
 
     hands: Sequence[Cutout]
     waters: Sequence[Background]
     rooms: Sequence[Background]
-    settings: CompositeSettings = CompositeSettings()  # noqa: RUF009 - frozen
+    size: tuple[int, int] = SIZE
 
     def composer(self, seed: int) -> DiverComposer:
         """One that draws from these."""
-        return DiverComposer(self.hands, self.waters, self.rooms, self.settings, seed=seed)
+        return DiverComposer(self.hands, self.waters, self.rooms, self.size, seed)
 
 
 def compose_pool(
@@ -44,7 +44,7 @@ def compose_pool(
     """
     table = path.with_suffix(".json")
     if not (table.exists() and path.exists()):
-        width, height = ingredients.settings.size
+        width, height = ingredients.size
         rows = []
         with replacing(path) as temporary:
             images = np.lib.format.open_memmap(

@@ -1,8 +1,8 @@
 """The contour bank made from a data folder: outlines of cut-out hands, class by class, and of other things."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -18,53 +18,41 @@ from lightgesture.sources import read_picture
 from lightgesture.training.datasets import Sample, read_landmarks, read_negatives, read_table, read_webcam
 from lightgesture.training.pictures.cutouts import cut_out
 from lightgesture.training.pool.left_out import LeftOut
+from lightgesture.training.regions.region_pictures import NEGATIVE_SETS, NEVER
 
 Contour = NDArray[np.int32]
 
 
-@dataclass(frozen=True, slots=True)
-class BankTraining:
-    """What goes into the bank.
-
-    centres: typical outlines kept of each token. hands: outlines of each token from which they are found. frames: whole
-        frames in which other things are looked for, of people and of water. others: outlines kept of one frame.
-    other_iou: IoU with every labelled hand below which a region is something else.
-    negative_sets: sets of `negatives` that are trained on; all others stay unseen for the report.
-    never: sources of `hands` whose people are those of `frames/drone`, whose figures would not count otherwise.
-    """
-
-    centres: int = 16
-    hands: int = 120
-    frames: int = 240
-    others: int = 8
-    other_iou: float = 0.2
-    negative_sets: tuple[str, ...] = ("funie", "rov25", "u45")
-    never: frozenset[str] = frozenset({"emre_drone"})
+CENTRES: Final = 16
+"""Typical outlines kept of each token."""
+HANDS: Final = 120
+"""Outlines of each token from which they are found."""
+FRAMES: Final = 240
+"""Whole frames in which other things are looked for, of people and of water."""
+OTHERS: Final = 8
+"""Outlines kept of one frame."""
+OTHER_IOU: Final = 0.2
+"""IoU with every labelled hand below which a region is something else."""
 
 
-def make_bank(
-    data: Path, seed: int = 0, without: LeftOut | None = None, settings: BankTraining | None = None
-) -> Bank:
+def make_bank(data: Path, seed: int = 0, without: LeftOut | None = None) -> Bank:
     """The bank of the ten tokens and `OTHER`; half a minute. The same arguments give the same bank.
 
     without: sources that are left out, of hands and of frames alike. Raises InputError, or ValueError where nothing is
     left of a class.
     """
-    settings = settings or BankTraining()
     without = without or LeftOut()
     rng = np.random.default_rng(seed)
-    outlines = hand_outlines(data, rng, without, settings)
-    outlines[OTHER] = other_outlines(data, rng, without, settings)
-    return build_bank(outlines, settings.centres, seed)
+    outlines = hand_outlines(data, rng, without)
+    outlines[OTHER] = other_outlines(data, rng, without)
+    return build_bank(outlines, CENTRES, seed)
 
 
-def hand_outlines(
-    data: Path, rng: np.random.Generator, without: LeftOut, settings: BankTraining
-) -> dict[str, list[Contour]]:
+def hand_outlines(data: Path, rng: np.random.Generator, without: LeftOut) -> dict[str, list[Contour]]:
     """Outlines of hands of `hands/train`, cut out along their landmarks, by token in the order of CLASSES."""
     by_token: dict[str, list[dict[str, str]]] = {token: [] for token in CLASSES if token != NONE}
     for row in read_table(data, "hands/train.csv"):
-        kept = row["set"] not in settings.never and not without.covers(row["set"])
+        kept = row["set"] not in NEVER and not without.covers(row["set"])
         if kept and row["token"] in by_token:
             by_token[row["token"]].append(row)
     found: dict[str, list[Contour]] = {}
@@ -74,7 +62,7 @@ def hand_outlines(
             contour = _cut_out_outline(data, row)
             if contour is not None:
                 found[token].append(contour)
-            if len(found[token]) == settings.hands:
+            if len(found[token]) == HANDS:
                 break
     return found
 
@@ -96,30 +84,28 @@ def _cut_out_outline(data: Path, row: dict[str, str]) -> Contour | None:
     return None if hand is None else outline((hand.alpha > 0.5).astype(np.uint8))
 
 
-def other_outlines(
-    data: Path, rng: np.random.Generator, without: LeftOut, settings: BankTraining
-) -> list[Contour]:
+def other_outlines(data: Path, rng: np.random.Generator, without: LeftOut) -> list[Contour]:
     """Outlines of regions that are no hands: furniture, walls, clothes and faces of `webcam/train`, and what stands
     out under water."""
     rooms = [sample for sample in read_webcam(data, "train") if not without.covers(sample.source)]
     waters = [
         sample
         for sample in read_negatives(data)
-        if sample.source in settings.negative_sets and not without.covers(sample.source)
+        if sample.source in NEGATIVE_SETS and not without.covers(sample.source)
     ]
     colours = ColourStage()
     found: list[Contour] = []
     for samples in (rooms, waters):
-        for index in rng.permutation(len(samples))[: settings.frames // 2]:
-            others = _regions_beside_hands(samples[index], colours, settings.other_iou)
-            found += [others[place] for place in rng.permutation(len(others))[: settings.others]]
+        for index in rng.permutation(len(samples))[: FRAMES // 2]:
+            others = _regions_beside_hands(samples[index], colours)
+            found += [others[place] for place in rng.permutation(len(others))[:OTHERS]]
     return found
 
 
-def _regions_beside_hands(sample: Sample, colours: ColourStage, other_iou: float) -> list[Contour]:
+def _regions_beside_hands(sample: Sample, colours: ColourStage) -> list[Contour]:
     colour = colours.process(read_picture(sample.path))
     proposals = propose(colour)
     hands = np.array([label.box for label in sample.labels], np.float64).reshape(-1, 4)
     overlap = pairwise_iou(proposals.boxes, hands / np.tile(colour.scale, 2))
-    beside = np.flatnonzero((overlap < other_iou).all(axis=1))
+    beside = np.flatnonzero((overlap < OTHER_IOU).all(axis=1))
     return [proposals.contours[index] for index in beside]

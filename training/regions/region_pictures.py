@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -18,27 +19,21 @@ from lightgesture.training.datasets import (
     read_table,
     read_webcam,
 )
-from lightgesture.training.pictures.composites import Background, attenuate, expose
+from lightgesture.training.pictures.composites import Background
 from lightgesture.training.pictures.cutouts import Cutout, cut_out
+from lightgesture.training.pictures.light import attenuate, expose
 from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions.trees import BoxedPicture
 
-
-@dataclass(frozen=True, slots=True)
-class PictureSettings:
-    """What is read.
-
-    cutouts_per_source: most hands cut out of one source, so that no person rules.
-    longest_side: whole frames are reduced to this many pixels first.
-    negative_sets: sets of `negatives` that are trained on; all others stay unseen for the report.
-    never: sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures
-        would not count otherwise.
-    """
-
-    cutouts_per_source: int = 16
-    longest_side: int = 320
-    negative_sets: tuple[str, ...] = ("funie", "rov25", "u45")
-    never: tuple[str, ...] = ("emre_drone",)
+CUTOUTS_PER_SOURCE: Final = 16
+"""Most hands cut out of one source, so that no person rules."""
+LONGEST_SIDE: Final = 320
+"""Whole frames are reduced to so many pixels first."""
+NEGATIVE_SETS: Final = ("funie", "rov25", "u45")
+"""Sets of `negatives` that are trained on; all others stay unseen for the report."""
+NEVER: Final = frozenset({"emre_drone"})
+"""Sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures would not count
+otherwise."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,42 +73,42 @@ class Material:
         return [Background(one.image, *one.sources) for one in self.empty]
 
 
-def read_material(data: Path, without: LeftOut, settings: PictureSettings, seed: int) -> Material:
+def read_material(data: Path, without: LeftOut, seed: int) -> Material:
     """Everything, less the sources left out. Raises InputError."""
     return Material(
-        whole_frames(data, without, settings),
-        negatives(data, without, settings),
-        cutouts(data, without, settings, seed),
+        whole_frames(data, without),
+        negatives(data, without),
+        cutouts(data, without, seed),
     )
 
 
-def whole_frames(data: Path, without: LeftOut, settings: PictureSettings) -> list[BoxedPicture]:
+def whole_frames(data: Path, without: LeftOut) -> list[BoxedPicture]:
     """People in rooms: `webcam/train`, whose faces are all known, and the single pictures of `frames/subhi`."""
     single = [one for one in read_frames(data) if one.source == "subhi" and one.order is None]
     rooms = [(one, True) for one in read_webcam(data, "train")] + [(one, False) for one in single]
-    return [_boxed(one, settings, faces) for one, faces in rooms if not without.covers(one.source)]
+    return [_boxed(one, faces) for one, faces in rooms if not without.covers(one.source)]
 
 
-def negatives(data: Path, without: LeftOut, settings: PictureSettings) -> list[BoxedPicture]:
+def negatives(data: Path, without: LeftOut) -> list[BoxedPicture]:
     """Underwater frames without a hand, of the sets that may be trained on."""
     return [
-        _boxed(one, settings, all_faces=False)
+        _boxed(one, all_faces=False)
         for one in read_negatives(data)
-        if one.source in settings.negative_sets and not without.covers(one.source)
+        if one.source in NEGATIVE_SETS and not without.covers(one.source)
     ]
 
 
-def cutouts(data: Path, without: LeftOut, settings: PictureSettings, seed: int) -> list[Cutout]:
+def cutouts(data: Path, without: LeftOut, seed: int) -> list[Cutout]:
     """Hands of `hands/train`, cut out, at most a few from each source."""
     by_source: dict[str, list[dict[str, str]]] = {}
     for row in read_table(data, "hands/train.csv"):
-        if row["set"] not in settings.never and not without.covers(row["set"]):
+        if row["set"] not in NEVER and not without.covers(row["set"]):
             by_source.setdefault(row["set"], []).append(row)
     rng = np.random.default_rng(seed)
     found = []
     for source in sorted(by_source):
         own = by_source[source]
-        for index in rng.permutation(len(own))[: settings.cutouts_per_source]:
+        for index in rng.permutation(len(own))[:CUTOUTS_PER_SOURCE]:
             row = own[index]
             image = read_picture(data / "hands" / row["path"])
             cutout = cut_out(image, read_landmarks(row), row["token"], source)
@@ -149,9 +144,9 @@ def _mirrored(picture: BoxedPicture) -> BoxedPicture:
     return BoxedPicture(np.ascontiguousarray(picture.image[:, ::-1]), boxes)
 
 
-def _boxed(sample: Sample, settings: PictureSettings, all_faces: bool) -> BoxedPicture:
+def _boxed(sample: Sample, all_faces: bool) -> BoxedPicture:
     image = read_picture(sample.path)
-    scale = min(settings.longest_side / max(image.shape[:2]), 1.0)
+    scale = min(LONGEST_SIDE / max(image.shape[:2]), 1.0)
     if scale < 1.0:
         image = np.asarray(
             cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8

@@ -3,50 +3,60 @@
 import json
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector, save_selector
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
+from lightgesture.training.model_files import write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
-from lightgesture.training.regions.learned import fit_place_pairs, fit_places, look
 from lightgesture.training.regions.region_pictures import (
+    NEGATIVE_SETS,
     Material,
-    PictureSettings,
     read_material,
     variants,
 )
-from lightgesture.training.regions.trees import BoxedPicture, fit_pairs, fit_regions
+from lightgesture.training.regions.trees import (
+    BoxedPicture,
+    fit_pairs,
+    fit_place_pairs,
+    fit_places,
+    fit_regions,
+    look,
+)
 
 Progress = Callable[[str], None]
 
 
+ONE_IN: Final = 8
+"""Of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to people and
+water they have not seen."""
+COMPOSED: Final = 12000
+"""Pictures composed for the nets and the classical trees of regions."""
+UNSEEN: Final = 2000
+"""Those composed of what is kept from the nets."""
+PAIR_SHARE: Final = 0.4
+"""Of all pictures for trees, those for pairs."""
+
+
 @dataclass(frozen=True, slots=True)
 class RegionTraining:
-    """How much goes into the selector.
+    """How long the nets of the selector are trained."""
 
-    one_in: of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to
-    people and water they have not seen. composed: pictures for the nets and the classical trees of regions. unseen:
-    those composed of what is kept from the nets. pair_share: of all pictures for trees, those for pairs.
-    locator_steps, refiner_steps: of the optimiser.
-    """
-
-    one_in: int = 8
-    composed: int = 12000
-    unseen: int = 2000
-    pair_share: float = 0.4
     locator_steps: int = 10000
+    """Steps of the optimiser, 1 or more."""
     refiner_steps: int = 8000
-    pictures: PictureSettings = field(default_factory=PictureSettings)
+    """Likewise."""
 
 
 def train_regions(
@@ -67,21 +77,21 @@ def train_regions(
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
     folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
     progress("reading whole frames and cutting out hands")
-    material = read_material(data, without, settings.pictures, seed)
-    for_nets, for_trees = material.parted(settings.one_in)
+    material = read_material(data, without, seed)
+    for_nets, for_trees = material.parted(ONE_IN)
     if not all((part.frames and part.empty and part.hands) for part in (for_nets, for_trees)):
         raise InputError(f"{data}: too little is left to train on; leave out fewer sources")
     progress("composing pictures")
-    composed = _compose(for_nets, settings.composed, seed + 1, jobs, folder / "composed.npy")
-    unseen = _compose(for_trees, settings.unseen, seed + 2, jobs, folder / "unseen.npy")
+    composed = _compose(for_nets, COMPOSED, seed + 1, jobs, folder / "composed.npy")
+    unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
     learned = _learned(for_nets, composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
-    first, second = _tree_pictures(for_trees, unseen, settings.pair_share, seed)
+    first, second = _tree_pictures(for_trees, unseen, seed)
     places = fit_places(look(first, Places(*learned)), seed)
     pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
-    save_selector(out, Selector(classical, LearnedParts(*learned, places, pairs)))
+    write_selector(Selector(classical, LearnedParts(*learned, places, pairs)), out)
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 
@@ -102,8 +112,7 @@ def _learned(
     from lightgesture.training.nets.locator import train_locator
     from lightgesture.training.nets.locator_samples import LocatorSamples
     from lightgesture.training.nets.refiner import train_refiner
-    from lightgesture.training.nets.refiner_samples import RefinerSamples
-    from lightgesture.training.regions.hard_regions import hard_regions
+    from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
 
     samples = LocatorSamples(material.frames, material.empty, composed)
     locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
@@ -116,7 +125,7 @@ def _learned(
 
 
 def _tree_pictures(
-    material: Material, unseen: list[BoxedPicture], pair_share: float, seed: int
+    material: Material, unseen: list[BoxedPicture], seed: int
 ) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
     """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
     rng = np.random.default_rng(seed)
@@ -124,7 +133,7 @@ def _tree_pictures(
     whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
     parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
     for place, index in enumerate(order):
-        part = parts[place < pair_share * len(order)]
+        part = parts[place < PAIR_SHARE * len(order)]
         if index < whole:
             part.extend(variants(material.frames[index], rng))
         else:
@@ -165,9 +174,9 @@ def _write_card(
             "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
             "hands cut out of hands/train": len(material.hands),
             "underwater frames without a hand": len(material.empty),
-            "composed pictures": settings.composed + settings.unseen,
-            "sets of negatives used": list(settings.pictures.negative_sets),
-            "kept from the nets, for the trees": f"one in {settings.one_in} sources",
+            "composed pictures": COMPOSED + UNSEEN,
+            "sets of negatives used": list(NEGATIVE_SETS),
+            "kept from the nets, for the trees": f"one in {ONE_IN} sources",
         },
         CARD_KEY: without.to_card(),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "

@@ -1,17 +1,29 @@
-"""Fit the selector's trees from pictures with boxes. Needs scikit-learn; never imported on the decode path."""
+"""Fit the selector's trees from pictures with boxes: those that score regions, and those that weigh both nets.
 
-from collections.abc import Iterable
+Needs scikit-learn; never imported on the decode path.
+"""
+
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.bank import Bank
+from lightgesture.features.find.candidates import (
+    PAIR_COLUMNS,
+    PLACE_COLUMNS,
+    describe_places,
+    pair_numbers,
+)
+from lightgesture.features.find.classical import COLUMNS as REGION_COLUMNS
 from lightgesture.features.find.classical import describe_regions, scored_candidates
-from lightgesture.features.find.pairs import COLUMNS, pair_numbers
+from lightgesture.features.find.learned import Places, scored_places
+from lightgesture.features.find.locator import Peaks
 from lightgesture.features.find.proposals import Proposals, propose
-from lightgesture.features.find.settings import CLASSICAL
+from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Box, Image
@@ -21,26 +33,34 @@ Float = NDArray[np.float32]
 
 @dataclass(frozen=True, slots=True)
 class TreeSettings:
-    """How a set of trees is fitted (scikit-learn's HistGradientBoostingRegressor on squared error).
-
-    trees: how many. leaves, depth: of one tree. least_rows: in a leaf. rate: learning rate. smoothing: L2 on
-    the leaves. hand_weight: weight of a row whose IoU is over 0.3 beside 1, since hands are rare.
-    """
+    """How a set of trees is fitted (scikit-learn's HistGradientBoostingRegressor on squared error)."""
 
     trees: int
+    """How many are summed."""
     leaves: int
+    """Most leaves of one tree."""
     depth: int
+    """Most steps from the root to a leaf."""
     least_rows: int
-    rate: float = 0.12
-    smoothing: float = 1.0
-    hand_weight: float = 3.0
+    """Fewest rows in a leaf."""
+    rate: float
+    """Learning rate, the factor on what each tree adds, 0 to 1."""
+    hand_weight: float = 1.0
+    """Weight of a row whose IoU is over `HAND_IOU` beside 1, since hands are rare."""
 
 
-REGION_TREES = TreeSettings(trees=200, leaves=48, depth=8, least_rows=40)
-PAIR_TREES = TreeSettings(trees=120, leaves=24, depth=6, least_rows=30, rate=0.1)
-MIDDLING_IOU = 0.1
-KEPT_SHARE = 0.4
-"""Of the regions whose IoU is below MIDDLING_IOU, the share that is trained on: they are many and alike."""
+REGION_TREES: Final = TreeSettings(trees=200, leaves=48, depth=8, least_rows=40, rate=0.12, hand_weight=3.0)
+PAIR_TREES: Final = TreeSettings(trees=120, leaves=24, depth=6, least_rows=30, rate=0.1, hand_weight=3.0)
+PLACE_TREES: Final = TreeSettings(trees=80, leaves=12, depth=4, least_rows=40, rate=0.08)
+"""Of places and of their pairs."""
+SMOOTHING: Final = 1.0
+"""L2 on the leaves."""
+HAND_IOU: Final = 0.3
+"""Overlap from which a row is one of a hand."""
+MIDDLING_IOU: Final = 0.1
+"""Overlap up to which a region is far from a hand."""
+KEPT_SHARE: Final = 0.4
+"""Of the regions whose IoU is not above `MIDDLING_IOU`, the share that is trained on: they are many and alike."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,10 +96,15 @@ def _describe_picture(stage: ColourStage, picture: BoxedPicture, bank: Bank) -> 
     return _Described(colour, proposals, describe_regions(colour, proposals, bank), overlaps)
 
 
-def fit_trees(rows: Float, targets: Float, settings: TreeSettings, seed: int) -> Trees:
+def fit_trees(rows: Sequence[Float], targets: Sequence[Float], settings: TreeSettings, seed: int) -> Trees:
+    """Trees that predict targets, float32 (n,), from rows, float32 (n, columns), picture by picture.
+
+    Raises ValueError without any row.
+    """
     from sklearn.ensemble import HistGradientBoostingRegressor
 
-    if not len(rows):
+    table, wanted = np.concatenate(rows), np.concatenate(targets)
+    if not len(table):
         raise ValueError("no region was proposed in any picture; train the nets for more steps")
     model = HistGradientBoostingRegressor(
         max_iter=settings.trees,
@@ -87,12 +112,12 @@ def fit_trees(rows: Float, targets: Float, settings: TreeSettings, seed: int) ->
         max_leaf_nodes=settings.leaves,
         max_depth=settings.depth,
         min_samples_leaf=settings.least_rows,
-        l2_regularization=settings.smoothing,
+        l2_regularization=SMOOTHING,
         early_stopping=False,  # pyright: ignore[reportArgumentType]
         random_state=seed,
     )
-    weights = np.where(targets > 0.3, settings.hand_weight, 1.0)
-    model.fit(rows, targets, sample_weight=weights)
+    weights = np.where(wanted > HAND_IOU, settings.hand_weight, 1.0)
+    model.fit(table, wanted, sample_weight=weights)
     return export_trees(model)
 
 
@@ -123,12 +148,10 @@ def export_trees(model: object) -> Trees:
     return Trees(feature, threshold, left, right, value, base, depth)
 
 
-def fit_regions(
-    pictures: Iterable[BoxedPicture], bank: Bank, seed: int, settings: TreeSettings = REGION_TREES
-) -> Trees:
+def fit_regions(pictures: Iterable[BoxedPicture], bank: Bank, seed: int) -> Trees:
     """Trees that predict the IoU of a proposal with the best hand box."""
     stage, rng = ColourStage(), np.random.default_rng(seed)
-    rows, targets = [], []
+    rows, targets = [np.zeros((0, REGION_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for picture in pictures:
         described = _describe_picture(stage, picture, bank)
         if described is None:
@@ -136,30 +159,80 @@ def fit_regions(
         kept = (described.overlaps > MIDDLING_IOU) | (rng.random(len(described.overlaps)) < KEPT_SHARE)
         rows.append(described.numbers[kept])
         targets.append(described.overlaps[kept])
-    return fit_trees(np.concatenate(rows), np.concatenate(targets), settings, seed)
+    return fit_trees(rows, targets, REGION_TREES, seed)
 
 
-def fit_pairs(
-    pictures: Iterable[BoxedPicture],
-    regions: Trees,
-    bank: Bank,
-    seed: int,
-    settings: TreeSettings = PAIR_TREES,
-) -> Trees:
+def fit_pairs(pictures: Iterable[BoxedPicture], regions: Trees, bank: Bank, seed: int) -> Trees:
     """Trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than those that
     `regions` were fitted on, whose scores would be too good; every hand in them must have its box."""
     stage = ColourStage()
-    rows, targets = [np.zeros((0, COLUMNS), np.float32)], [np.zeros(0, np.float32)]
+    rows, targets = [np.zeros((0, PAIR_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for picture in pictures:
         described = _describe_picture(stage, picture, bank)
         if described is None:
             continue
         scores = evaluate(regions, described.numbers)
-        kept, items = scored_candidates(described.colour, described.proposals, scores, CLASSICAL)
-        height, width = described.colour.skin.shape
-        pairs, numbers = pair_numbers(items, (width, height), None, CLASSICAL.apart_iou)
-        if pairs:
-            own = described.overlaps[kept]
-            rows.append(numbers)
-            targets.append(np.array([min(own[i], own[j]) for i, j in pairs], np.float32))
-    return fit_trees(np.concatenate(rows), np.concatenate(targets), settings, seed)
+        kept, items = scored_candidates(described.colour, described.proposals, scores)
+        height, width = described.colour.picture.shape[:2]
+        pairs, numbers = pair_numbers(items, (width, height), None)
+        rows.append(numbers)
+        targets.append(_lower_of_both(described.overlaps[kept], pairs))
+    return fit_trees(rows, targets, PAIR_TREES, seed)
+
+
+def _lower_of_both(overlaps: Float, pairs: Sequence[tuple[int, int]]) -> Float:
+    """float32 (pairs,): the lower IoU of the two regions of each pair, given that of each region."""
+    return np.array([min(overlaps[one], overlaps[other]) for one, other in pairs], np.float32)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen:
+    """A picture with what the nets say of it. overlaps: float32 (n,), IoU of each refined box with the best hand."""
+
+    colour: ColourMap
+    boxes: NDArray[np.float64]
+    peaks: Peaks
+    refined: Refined
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) of the working picture."""
+        return self.colour.picture.shape[1], self.colour.picture.shape[0]
+
+    def overlaps(self, boxes: Float) -> Float:
+        """float32 (n,): IoU of boxes (working pixels) with the best hand each."""
+        if not len(self.boxes) or not len(boxes):
+            return np.zeros(len(boxes), np.float32)
+        scale = np.array([*self.colour.scale, *self.colour.scale])
+        return np.asarray(pairwise_iou(boxes * scale, self.boxes).max(axis=1), np.float32)
+
+
+def look(pictures: Iterable[BoxedPicture], nets: Places) -> Iterable[Seen]:
+    """Let nets that were not trained on these pictures search them."""
+    stage = ColourStage()
+    for picture in pictures:
+        colour = stage.process(picture.image)
+        boxes = np.array(picture.boxes, np.float64).reshape(-1, 4)
+        yield Seen(colour, boxes, *nets.find(colour))
+
+
+def fit_places(seen: Iterable[Seen], seed: int) -> Trees:
+    """Trees that predict the IoU of a refined box with the best hand box."""
+    rows, targets = [np.zeros((0, PLACE_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
+    for one in seen:
+        rows.append(describe_places(one.peaks, one.refined, one.size))
+        targets.append(one.overlaps(one.refined.boxes))
+    return fit_trees(rows, targets, PLACE_TREES, seed)
+
+
+def fit_place_pairs(seen: Iterable[Seen], places: Trees, seed: int) -> Trees:
+    """Trees that predict the lower IoU of a pair. `seen` must be other pictures than those of `places`, and every hand
+    in them must have its box."""
+    rows, targets = [np.zeros((0, PAIR_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
+    for one in seen:
+        scores = evaluate(places, describe_places(one.peaks, one.refined, one.size))
+        kept, items = scored_places(one.colour, one.peaks, one.refined, scores)
+        pairs, numbers = pair_numbers(items, one.size, one.peaks.face)
+        rows.append(numbers)
+        targets.append(_lower_of_both(one.overlaps(one.refined.boxes[kept]), pairs))
+    return fit_trees(rows, targets, PLACE_TREES, seed)

@@ -1,6 +1,5 @@
 """From a manifest to a model file and its card: the training of the SVM from end to end."""
 
-import json
 import time
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -11,9 +10,8 @@ import numpy as np
 from lightgesture._version import __version__
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import CLASSES, in_order
-from lightgesture.models.archive import write_file
-from lightgesture.models.svm_file import write_svm_model
 from lightgesture.training.card import make_card
+from lightgesture.training.model_files import write_json, write_svm_model
 from lightgesture.training.nets.checkpoints import checkpoint_folder, peak_memory_mib
 from lightgesture.training.pool.patch_kinds import PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import make_pool
@@ -91,5 +89,5 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
         },
     }
     write_svm_model(model, out)
-    write_file(out.with_suffix(".json"), (json.dumps(card, indent=1) + "\n").encode())
+    write_json(card, out.with_suffix(".json"))
     return card

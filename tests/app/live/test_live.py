@@ -119,7 +119,7 @@ def test_standard_input_without_a_picture(run, fake, monkeypatch):
     ("arguments", "reason"),
     [
         (["no_such_thing"], "no_such_thing: is no stream; name a camera"),
-        (["-", "--size", "640"], "--size: String should match pattern"),
+        (["-", "--size", "640"], "--size: should be WxH, not '640'; change it"),
         (["-", "--udp", "host"], "--udp host: is no HOST:PORT"),
         (["-", "--mavlink", "nowhere"], "--mavlink nowhere: is no link"),
         (["-", "--hook", "no-such-program"], "--hook no-such-program: no such command"),

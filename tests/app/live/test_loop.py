@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lightgesture.fsm import Instruction, State
-from lightgesture.live import LiveLoop, LiveSettings, Mailbox, Snapshot
+from lightgesture.live import LiveLoop, Mailbox, Snapshot
 from lightgesture.records import FrameRecord, HeartbeatRecord, SummaryRecord
 
 IMAGE = np.full((48, 64, 3), 90, np.uint8)
@@ -37,7 +37,7 @@ class ListListener:
 class Scene:
     """A loop with a mailbox to fill; `said`: its messages."""
 
-    def __init__(self, fake, *, clock=None, listeners=(), frames=False, **settings):
+    def __init__(self, fake, *, clock=None, listeners=(), frames=False, heartbeat_s=1.0):
         self.box, self.outlet, self.said = Mailbox(), ListOutlet(), []
         self.pipeline = fake(model="svm", source="cam", frames=True, debug=None)
         self.stopping = threading.Event()
@@ -50,7 +50,7 @@ class Scene:
             report=self.said.append,
             listeners=listeners,
             frames=frames,
-            settings=LiveSettings(**settings),
+            heartbeat_s=heartbeat_s,
         )
 
     def feed(self, *contents, gap_s=0.0):
@@ -108,7 +108,7 @@ def test_a_slow_decoder_gets_the_newest_picture(fake):
 
 
 def test_heartbeats_come_each_second_with_and_without_pictures(fake):
-    scene = Scene(fake, heartbeat_s=0.1, poll_s=0.02)
+    scene = Scene(fake, heartbeat_s=0.1)
     threading.Timer(0.75, scene.box.close).start()
     for index in range(3):
         scene.box.put(Snapshot(IMAGE, index, 0.0))
@@ -123,7 +123,7 @@ def test_heartbeats_come_each_second_with_and_without_pictures(fake):
 
 
 def test_a_heartbeat_tells_the_state_of_the_decoder(fake):
-    scene = Scene(fake, heartbeat_s=0.05, poll_s=0.01)
+    scene = Scene(fake, heartbeat_s=0.05)
     scene.feed(IMAGE, IMAGE, gap_s=0.3)
     assert [beat.state for beat in scene.outlet.of(HeartbeatRecord)][-1] == "collecting"
     assert scene.outlet.of(State)[0].state == "collecting"
@@ -158,8 +158,9 @@ def test_a_picture_may_change_its_size(fake):
     assert [seen[2] for seen in scene.pipeline.seen] == [(48, 64, 3), (9, 7, 3), (48, 64, 3)]
 
 
-def test_silence_is_told_once(fake):
-    scene = Scene(fake, heartbeat_s=0.02, poll_s=0.01, silence_s=0.05)
+def test_silence_is_told_once(fake, monkeypatch):
+    monkeypatch.setattr("lightgesture.live.loop.SILENCE_S", 0.05)
+    scene = Scene(fake, heartbeat_s=0.02)
     threading.Timer(0.3, scene.stopping.set).start()
     scene.loop.run(scene.stopping)
     assert scene.said == ["cam: no picture for 0 s"]

@@ -4,11 +4,13 @@ import time
 
 import pytest
 
-from lightgesture.backoff import BackoffSettings
+from lightgesture.backoff import Backoff
 from lightgesture.errors import InputError
-from lightgesture.live import LiveSettings, Mailbox, Reader
+from lightgesture.live import Mailbox, Reader
 
-QUICK = LiveSettings(reconnect=BackoffSettings(first_s=0.01, longest_s=0.02))
+
+def quick():
+    return Backoff(first_s=0.01, longest_s=0.02)
 
 
 class FakeStream:
@@ -54,7 +56,7 @@ class ListBox(Mailbox):
 def read(stream, until, clock=time.monotonic):
     """Read until there are so many pictures or the end; what came and what was said."""
     box, said = ListBox(), []
-    reader = Reader(stream, box, clock, said.append, QUICK)
+    reader = Reader(stream, box, clock, said.append, quick())
     reader.start()
     deadline = time.monotonic() + 5
     while len(box.all) < until and not box.is_closed:
@@ -103,7 +105,7 @@ def test_pictures_are_stamped_as_they_come():
 def test_a_defect_reaches_the_one_who_decodes():
     stream = FakeStream([b"1", ZeroDivisionError("oops")])
     box = Mailbox()
-    reader = Reader(stream, box, time.monotonic, lambda text: None, QUICK)
+    reader = Reader(stream, box, time.monotonic, lambda text: None, quick())
     reader.start()
     reader.stop()
     with pytest.raises(ZeroDivisionError, match="oops"):
@@ -111,9 +113,8 @@ def test_a_defect_reaches_the_one_who_decodes():
 
 
 def test_stopping_ends_the_wait_for_the_next_try():
-    settings = LiveSettings(reconnect=BackoffSettings(first_s=60, longest_s=60))
     said = []
-    reader = Reader(FakeStream(), Mailbox(), time.monotonic, said.append, settings)
+    reader = Reader(FakeStream(), Mailbox(), time.monotonic, said.append, Backoff(60, 60))
     reader.start()
     while not said:
         time.sleep(0.002)

@@ -9,19 +9,28 @@ import pytest
 
 from lightgesture.errors import UsageError
 from lightgesture.sinks import RecordError
-from lightgesture.sinks.hook import HookSettings, HookSink
+from lightgesture.sinks.hook import HookSink
 
 
-def hook(tmp_path, code, **settings):
+@pytest.fixture
+def patience(monkeypatch):
+    """Sets how long a command may take."""
+    return lambda seconds: monkeypatch.setattr("lightgesture.sinks.hook.TIMEOUT_S", seconds)
+
+
+def hook(tmp_path, code):
     script = tmp_path / "a hook.py"
     script.write_text(code)
-    return HookSink(f"{sys.executable} '{script}' '$HOME; false'", HookSettings(**settings))
+    return HookSink(f"{sys.executable} '{script}' '$HOME; false'")
 
 
-def test_the_record_comes_on_standard_input_and_no_shell_is_in_between(tmp_path, instruction, heartbeat):
+def test_the_record_comes_on_standard_input_and_no_shell_is_in_between(
+    tmp_path, patience, instruction, heartbeat
+):
     code = f"import sys; open({str(tmp_path / 'out')!r}, 'w').write(sys.argv[1] + sys.stdin.read())"
     # An emulated board takes more than the usual five seconds to start an interpreter.
-    sink = hook(tmp_path, code, timeout_s=60)
+    patience(60)
+    sink = hook(tmp_path, code)
     assert sink.wants(instruction())
     assert not sink.wants(heartbeat())
     sink.open()
@@ -41,11 +50,12 @@ def test_a_command_that_does_not_read(instruction):
     HookSink("true").send(instruction(words=("X" * 300_000,)))
 
 
-def test_a_command_that_takes_too_long_ends_with_what_it_started(tmp_path, instruction):
+def test_a_command_that_takes_too_long_ends_with_what_it_started(tmp_path, patience, instruction):
+    patience(0.3)
     child = f"import time; time.sleep(0.6); open({str(tmp_path / 'late')!r}, 'w')"
     code = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}])"
     with pytest.raises(RecordError, match=r"killed after 0.3 s$"):
-        hook(tmp_path, code, timeout_s=0.3).send(instruction())
+        hook(tmp_path, code).send(instruction())
     time.sleep(0.6)
     assert not (tmp_path / "late").exists()
 

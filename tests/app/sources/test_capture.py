@@ -12,7 +12,6 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import SourceOptions, live_source
 from lightgesture.sources.capture import CaptureStream, open_camera, open_gstreamer, open_network
 from lightgesture.sources.http_stream import HttpStream
-from lightgesture.sources.settings import StreamSettings
 from lightgesture.sources.standard_input import StandardInputStream
 
 
@@ -93,7 +92,7 @@ def test_no_camera_in_this_machine_is_an_input_error():
 def test_a_picture_of_a_kind_that_cannot_be_used(camera, monkeypatch):
     monkeypatch.setattr(FakeCapture, "pictures", [np.zeros((4, 4), np.float32)])
     with (
-        pytest.raises(InputError, match=r"sends what is no picture .holds float32 values"),
+        pytest.raises(InputError, match=r"sends what is no picture .frame of float32"),
         open_camera("0", SourceOptions()) as stream,
     ):
         list(stream)
@@ -111,10 +110,11 @@ def test_ffmpeg_reads_a_stream_and_tells_its_end():
     assert len(shapes) > 20
 
 
-def test_ffmpeg_gives_up_on_a_silent_peer():
+def test_ffmpeg_gives_up_on_a_silent_peer(monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"rtsp://user:secret@127.0.0.1:{server.getsockname()[1]}/cam"
-        stream = open_network(address, StreamSettings(timeout_s=0.3))
+        monkeypatch.setattr("lightgesture.sources.types.TIMEOUT_S", 0.3)
+        stream = open_network(address)
         with pytest.raises(InputError, match=r"^rtsp://127.0.0.1:\d+/cam: cannot be opened"), stream:
             pass
 

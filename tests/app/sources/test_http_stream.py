@@ -12,7 +12,6 @@ import pytest
 from lightgesture.benchmarks.mjpeg_server import MjpegServer
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.http_stream import HttpStream
-from lightgesture.sources.settings import StreamSettings
 
 FILES = [cv2.imencode(".jpg", np.full((48, 64, 3), 40 * n, np.uint8))[1].tobytes() for n in range(3)]
 
@@ -90,9 +89,11 @@ def test_chunked_answers(answering):
         ([OK, *([b"a" * 4000] * 20)], {}, "sends data, but no JPEG picture for 0.2 s; is it MJPEG"),
     ],
 )
-def test_what_may_go_wrong(answering, answer, options, reason):
+def test_what_may_go_wrong(monkeypatch, answering, answer, options, reason):
     address, _ = answering(answer, **options)
-    stream = HttpStream(f"http://{address}", StreamSettings(timeout_s=0.4, no_picture_s=0.2))
+    monkeypatch.setattr("lightgesture.sources.types.TIMEOUT_S", 0.4)
+    monkeypatch.setattr("lightgesture.sources.types.NO_PICTURE_S", 0.2)
+    stream = HttpStream(f"http://{address}")
     with pytest.raises(InputError, match=f"^http://{address.replace('?', '[?]')}: {reason}"), stream:
         list(stream)
 

@@ -6,11 +6,16 @@ import cv2
 import numpy as np
 import pytest
 
+from lightgesture.features.image import BitDepth
 from lightgesture.sources.ros_images import message_to_bgr8
 
 GREY = np.arange(48, dtype=np.uint8).reshape(6, 8) * 5
 BGR = np.dstack([GREY, 255 - GREY, np.full_like(GREY, 77)])
 FLAT = np.full((8, 8, 3), (40, 120, 200), np.uint8)
+
+
+def to_bgr8(content, depth=None):
+    return message_to_bgr8(content, depth or BitDepth(pytest.fail))
 
 
 def message(values, encoding, **changes):
@@ -34,12 +39,12 @@ def message(values, encoding, **changes):
     ],
 )
 def test_encodings(values, encoding, expected):
-    assert np.abs(message_to_bgr8(message(values, encoding)).astype(int) - expected).max() <= 6
+    assert np.abs(to_bgr8(message(values, encoding)).astype(int) - expected).max() <= 6
 
 
 def test_big_endian():
     values = GREY.astype(">u2") * 257
-    picture = message_to_bgr8(message(values.view(np.uint16), "mono16", is_bigendian=1))
+    picture = to_bgr8(message(values.view(np.uint16), "mono16", is_bigendian=1))
     assert np.abs(picture[..., 0].astype(int) - GREY).max() <= 6
 
 
@@ -49,7 +54,7 @@ def test_half_the_colours(encoding, order):
     y = np.uint8(round(16 + int(y) * 219 / 255))  # video levels
     pairs = {"UYVY": [u, y, v, y], "YUYV": [y, u, y, v]}[order]
     values = np.tile(np.array(pairs, np.uint8), (8, 4)).reshape(8, 8, 2)
-    assert np.abs(message_to_bgr8(message(values, encoding)).astype(int) - FLAT).max() <= 40
+    assert np.abs(to_bgr8(message(values, encoding)).astype(int) - FLAT).max() <= 40
 
 
 @pytest.mark.parametrize(
@@ -59,7 +64,7 @@ def test_half_the_colours(encoding, order):
 def test_mosaics(encoding, tile):
     value = dict(zip("bgr", FLAT[0, 0], strict=True))
     mosaic = np.tile(np.array([value[name] for name in tile], np.uint8).reshape(2, 2), (4, 4))
-    assert np.array_equal(message_to_bgr8(message(mosaic, encoding)), FLAT)
+    assert np.array_equal(to_bgr8(message(mosaic, encoding)), FLAT)
 
 
 @pytest.mark.parametrize(
@@ -73,12 +78,19 @@ def test_mosaics(encoding, tile):
 )
 def test_messages_that_do_not_fit(changes, reason):
     with pytest.raises(ValueError, match=reason):
-        message_to_bgr8(message(BGR, changes.pop("encoding", "bgr8"), **changes))
+        to_bgr8(message(BGR, changes.pop("encoding", "bgr8"), **changes))
 
 
 def test_a_compressed_picture_and_none():
     fields = {"format": "jpeg", "data": cv2.imencode(".png", BGR)[1].ravel()}
-    assert np.array_equal(message_to_bgr8(SimpleNamespace(**fields)), BGR)
+    assert np.array_equal(to_bgr8(SimpleNamespace(**fields)), BGR)
     for data in (np.zeros(0, np.uint8), np.zeros(90, np.uint8)):
         with pytest.raises(ValueError, match="holds no picture"):
-            message_to_bgr8(SimpleNamespace(format="jpeg", data=data))
+            to_bgr8(SimpleNamespace(format="jpeg", data=data))
+
+
+def test_a_topic_has_one_bit_depth():
+    depth = BitDepth(pytest.fail)
+    for level in (4095, 1000, 255, 0):
+        picture = to_bgr8(message(np.full((4, 4), level, np.uint16), "mono16"), depth)
+        assert picture[0, 0].tolist() == [level >> 4] * 3

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import InputError, UsageError
-from lightgesture.sources import SourceOptions, StreamFrames, open_any
-from lightgesture.sources.settings import StreamSettings
+from lightgesture.sources import LiveSource, SourceOptions, StreamFrames, open_any
 from lightgesture.sources.video import VideoFile
 
 PICTURE = np.zeros((48, 64, 3), np.uint8)
@@ -16,10 +15,10 @@ JPEG = cv2.imencode(".jpg", PICTURE)[1].tobytes()
 DAMAGED = JPEG[:40]
 
 
-class Stream:
+class Stream(LiveSource):
     """Gives what it was made of, then ends."""
 
-    name, is_reopened = "camera", True
+    name = "camera"
 
     def __init__(self, contents):
         self.contents, self.is_open = contents, False
@@ -28,7 +27,7 @@ class Stream:
         self.is_open = True
         return self
 
-    def __exit__(self, kind, error, trace):
+    def close(self):
         self.is_open = False
 
     def __iter__(self):
@@ -54,10 +53,10 @@ def test_times_are_those_of_coming_and_damaged_pictures_are_passed_over():
 
 def test_pictures_that_are_all_damaged_end_it():
     contents = (DAMAGED for _ in count())
-    frames = StreamFrames(Stream(contents), StreamSettings(no_picture_s=9), ticking())
+    frames = StreamFrames(Stream(contents), ticking())
     with (
         frames,
-        pytest.raises(InputError, match="camera: sends pictures, but for 9 s none that can be decoded"),
+        pytest.raises(InputError, match="camera: sends pictures, but for 10 s none that can be decoded"),
     ):
         next(iter(frames))
 

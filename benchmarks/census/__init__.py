@@ -1,0 +1,1 @@
+"""The house in figures: `python -m lightgesture.benchmarks.census`."""

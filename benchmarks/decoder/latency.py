@@ -1,0 +1,178 @@
+"""Nanoseconds a frame that the decoder takes, beside two state-machine libraries that run the same grammar.
+
+`python -m lightgesture.benchmarks.decoder.latency` steps through frames as a diver signs them at 30 a second. The
+libraries, where they are installed (`pip install transitions python-statemachine`), get the grammar's states and words
+and the same dwell. They are measured twice: asked in every frame that shows a word, with the dwell as the guard of each
+transition; and asked only once the dwell says that a sign was held, so that all other frames cost what our dwell costs.
+They move from state to state and do nothing else: no records, no time-out, no unread signs, no instruction's arguments.
+"""
+
+import argparse
+import resource
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from time import perf_counter_ns
+from typing import NamedTuple
+
+from lightgesture.benchmarks.decoder.peers import Arguments, Step, statemachine_step, transitions_step
+from lightgesture.benchmarks.tables import Cell, Table, to_text
+from lightgesture.console import print_line
+from lightgesture.fsm import Decoder, Grammar, Sign, Signs, load_grammar
+
+RATE = 30.0
+SIGNED = (
+    "0,0 5,5 ok,5 pic,ok ok,0 ok,ok",
+    "pic,0 3,pic left,pic ok,ok",
+    "0,0 pic,2 ok,2 ok,ok",
+    "pic,0 pic,pic ok,ok",
+)
+HELD, PASSAGE, PAUSE = 24, 9, 120
+"""Frames of a sign, between two, and between two sentences, in which hands are out of view."""
+
+IDLE, COLLECTING, ACCEPTING = "idle", "collecting", "accepting"
+BUSY = "while True: pass"
+"""What keeps a second core busy."""
+
+
+class Shown(NamedTuple):
+    """One frame. kind: no hands in view, a sign that is held or on its way, or the frame that makes it a word."""
+
+    left: str | None
+    right: str | None
+    is_seen: bool
+    kind: str
+
+
+def recorded(hold: int = 15) -> list[Shown]:
+    """The frames of the sentences."""
+    frames: list[Shown] = []
+    for sentence in SIGNED:
+        frames += [Shown(None, None, False, IDLE)] * PAUSE
+        for pair in sentence.split():
+            left, right = pair.split(",")
+            frames += [Shown(None, None, True, COLLECTING)] * PASSAGE
+            for frame in range(HELD):
+                frames.append(Shown(left, right, True, ACCEPTING if frame == hold - 1 else COLLECTING))
+    return frames
+
+
+def arguments(shown: Shown, frame: int) -> Arguments:
+    """What the pipeline calls the decoder with; made before the clock starts."""
+    left, right = Sign(shown.left, 0.9, seen=shown.is_seen), Sign(shown.right, 0.95, seen=shown.is_seen)
+    return Signs(left, right), frame / RATE, frame
+
+
+def our_step(grammar: Grammar) -> Step:
+    """The decoder as the pipeline calls it."""
+    return Decoder(grammar).step
+
+
+@contextmanager
+def busy_core(is_busy: bool) -> Iterator[None]:
+    """A second process that never rests, as the camera's or a detector's may."""
+    if not is_busy:
+        yield
+        return
+    other = subprocess.Popen([sys.executable, "-c", BUSY])
+    try:
+        yield
+    finally:
+        other.kill()
+        other.wait()
+
+
+def time_steps(step: Step, frames: Sequence[Shown], count: int) -> dict[str, list[int]]:
+    """Nanoseconds of `count` calls by the kind of frame, sorted; the clock's own time is taken off."""
+    overhead = min(-(perf_counter_ns() - perf_counter_ns()) for _ in range(1000))
+    times: dict[str, list[int]] = {IDLE: [], COLLECTING: [], ACCEPTING: []}
+    for frame in range(count):
+        shown = frames[frame % len(frames)]
+        given = arguments(shown, frame)
+        start = perf_counter_ns()
+        step(*given)
+        times[shown.kind].append(perf_counter_ns() - start - overhead)
+    return {kind: sorted(found) for kind, found in times.items()}
+
+
+def rows(name: str, times: dict[str, list[int]]) -> list[dict[str, Cell]]:
+    """Median and percentiles by kind, and over all frames."""
+    every = {**times, "all": sorted(time for found in times.values() for time in found)}
+    return [
+        {
+            "what": name,
+            "frames": kind,
+            "count": len(found),
+            "median_ns": found[len(found) // 2],
+            "p95_ns": found[len(found) * 95 // 100],
+            "p99_ns": found[len(found) * 99 // 100],
+            "mean_ns": sum(found) // len(found),
+        }
+        for kind, found in every.items()
+    ]
+
+
+def memory_rows(grammar: Grammar, frames: Sequence[Shown], count: int) -> list[dict[str, Cell]]:
+    """Frames a second without a clock around each, and peak memory before and after."""
+    step = our_step(grammar)
+    for frame in range(len(frames)):
+        step(*arguments(frames[frame], frame))
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    start = perf_counter_ns()
+    for frame in range(count):
+        step(*arguments(frames[frame % len(frames)], frame))
+    seconds = (perf_counter_ns() - start) / 1e9
+    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return [
+        {
+            "frames": count,
+            "seconds": seconds,
+            "frames_a_second": int(count / seconds),
+            "peak_before_kib": before,
+            "peak_after_kib": after,
+        }
+    ]
+
+
+def measure(count: int, peer_count: int) -> list[Table]:
+    """All tables. count: frames of the decoder; peer_count: frames of the libraries, which take longer."""
+    grammar, frames = load_grammar(), recorded()
+    throughput = memory_rows(grammar, frames, count)
+    found: list[dict[str, Cell]] = []
+    for is_busy in (False, True):
+        with busy_core(is_busy):
+            name = "lightgesture, second core busy" if is_busy else "lightgesture"
+            found += rows(name, time_steps(our_step(grammar), frames, count))
+    for name, make in (("transitions", transitions_step), ("python-statemachine", statemachine_step)):
+        for always in (True, False):
+            with suppress(ImportError):
+                asked = name if always else f"{name}, asked at held signs"
+                found += rows(asked, time_steps(make(grammar, always), frames, peer_count))
+    columns = ("what", "frames", "count", "median_ns", "p95_ns", "p99_ns", "mean_ns")
+    note = (
+        "accepting: the frame that makes a held sign a word; idle: no hands in view; collecting: all others, with the\n"
+        "records for displays that are made five times a second while a hold grows."
+    )
+    columns_all = ("frames", "seconds", "frames_a_second", "peak_before_kib", "peak_after_kib")
+    return [
+        Table("decoder_latency", "Nanoseconds a frame, one thread", columns, tuple(found), note),
+        Table("decoder_throughput", "Many frames in a row", columns_all, tuple(throughput)),
+    ]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m lightgesture.benchmarks.decoder.latency",
+        description="Nanoseconds a frame of the decoder and of two state-machine libraries.",
+    )
+    parser.add_argument("--frames", type=int, default=1_000_000, metavar="N", help="frames (default 1000000)")
+    args = parser.parse_args(argv)
+    count = max(len(recorded()), args.frames)
+    print_line(to_text(measure(count, max(len(recorded()), count // 20))))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

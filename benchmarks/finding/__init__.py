@@ -1,0 +1,1 @@
+"""Hands found in whole frames and clips, whatever they show."""

@@ -1,0 +1,1 @@
+"""Hands read in given boxes."""

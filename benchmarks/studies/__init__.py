@@ -1,0 +1,1 @@
+"""Trainings that tell what decides, and what is compared with."""

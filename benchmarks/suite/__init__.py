@@ -1,0 +1,1 @@
+"""The whole chain on clips of a signing diver with known truth."""

@@ -1,0 +1,168 @@
+"""Candidates for hands: which places stand for different things, and their numbers, for the trees that score them.
+
+Of a place: each net knows something that the other does not. The locator sees the person round the hand, the refiner
+sees its fingers; the trees predict the overlap (IoU) of the refined box with a hand, from 0 for none.
+
+Of a pair: do they look like the two hands of one person? Two hands that sign are about as large and as high as each
+other, stand apart, have one skin, and a face between them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.find.locator import Peaks
+from lightgesture.features.find.refiner import Refined
+from lightgesture.features.find.trees import Trees, evaluate
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
+
+Float = NDArray[np.float32]
+Point = tuple[float, float]
+
+PLACE_COLUMNS: Final = 14
+"""Numbers of one place."""
+PAIR_COLUMNS: Final = 17
+"""Numbers of one pair."""
+MOST: Final = 8
+"""Candidates kept for pairing; the time for pairs grows with the square."""
+LEAST_SCORE: Final = 0.06
+"""Of a candidate, 0 to 1; what lies below costs time and is never believed."""
+DISTINCT_IOU: Final = 0.3
+"""Candidates overlap less than this."""
+APART_IOU: Final = 0.1
+"""The two hands of a pair overlap at most this much."""
+FAR: Final = 9.0
+"""Stands for the distance of a face where none is seen, in hand sizes."""
+DARKEST: Final = 0.02
+"""Added to mean colours (0 to 1) before their ratio is taken, about five grey levels."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidate:
+    """A scored region. box: float32 (4,), x, y, width, height, working pixels. score: predicted IoU with a hand.
+    strength: how clearly it stands out, the level of its threshold or the heat of its peak; only the difference
+    between two counts. colour: float32 (3,), mean blue, green and red inside, 0 to 1."""
+
+    box: Float
+    score: float
+    strength: float
+    colour: Float
+
+
+def best_distinct(overlap: NDArray[np.float64], scores: Float) -> list[int]:
+    """Numbers of the regions of the highest scores that do not overlap a better one, the best first.
+
+    overlap: float64 (n, n), IoU of every two. scores: float32 (n,).
+    """
+    order = np.argsort(-scores, kind="stable")
+    return keep_distinct(overlap >= DISTINCT_IOU, order[scores[order] >= LEAST_SCORE], MOST)
+
+
+def logit(probabilities: Float) -> Float:
+    """log(p / (1 - p)), kept finite."""
+    p = np.clip(probabilities, 1e-4, 1.0 - 1e-4)
+    return np.asarray(np.log(p / (1.0 - p)), np.float32)
+
+
+def describe_places(peaks: Peaks, refined: Refined, size: tuple[int, int]) -> Float:
+    """float32 (n, PLACE_COLUMNS), one row for each peak; `size` (width, height) of the working picture."""
+    count = len(peaks.heat)
+    if not count:
+        return np.zeros((0, PLACE_COLUMNS), np.float32)
+    boxes = refined.boxes
+    own = pairwise_iou(peaks.boxes, boxes).diagonal()
+    sides = np.sqrt(boxes[:, 2] * boxes[:, 3])
+    centres = boxes[:, :2] + boxes[:, 2:] / 2
+    others = pairwise_iou(boxes, boxes) - np.eye(count)
+    to_face = np.full((count, 2), FAR)
+    if peaks.face is not None:
+        to_face = np.abs(centres - np.array(peaks.face)) / sides[:, None]
+    inside = np.clip(np.minimum(boxes[:, :2] + boxes[:, 2:], size) - np.maximum(boxes[:, :2], 0), 0, None)
+    return np.column_stack(
+        [
+            logit(peaks.heat),
+            refined.hand,
+            own,
+            np.log(sides / min(size)),
+            np.log(boxes[:, 2] / boxes[:, 3]),
+            np.log(sides / np.sqrt(peaks.boxes[:, 2] * peaks.boxes[:, 3])),
+            centres / np.array(size),
+            to_face,
+            others.max(axis=1),
+            inside.prod(axis=1) / (boxes[:, 2] * boxes[:, 3]),
+            np.arange(count),
+            np.full(count, count),
+        ]
+    ).astype(np.float32)
+
+
+def describe_pairs(
+    first: Sequence[Candidate], second: Sequence[Candidate], size: tuple[int, int], face: Point | None
+) -> Float:
+    """float32 (pairs, PAIR_COLUMNS), one row for each first with its second, the same whichever of the two comes first.
+
+    size: (width, height) of the working picture. face: centre of the likeliest face, None where none is seen.
+    """
+    if not first:
+        return np.zeros((0, PAIR_COLUMNS), np.float32)
+    a, b = _table(first), _table(second)
+    swapped = a[:, 0] + a[:, 2] / 2 > b[:, 0] + b[:, 2] / 2
+    a[swapped], b[swapped] = b[swapped], a[swapped]
+    sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
+    unit = np.sqrt(sides_a * sides_b)
+    centres_a, centres_b = a[:, :2] + a[:, 2:4] / 2, b[:, :2] + b[:, 2:4] / 2
+    apart = (centres_b - centres_a) / unit[:, None]
+    middle = (centres_a + centres_b) / 2
+    contrast = np.log((a[:, 6:] + DARKEST) / (b[:, 6:] + DARKEST))
+    to_face = np.full((len(a), 2), FAR) if face is None else (np.array(face) - middle) / unit[:, None]
+    return np.column_stack(
+        [
+            np.minimum(a[:, 4], b[:, 4]),
+            np.maximum(a[:, 4], b[:, 4]),
+            np.abs(np.log(sides_a / sides_b)),
+            np.abs(np.log(a[:, 2:4] / b[:, 2:4])),
+            apart[:, 0],
+            np.abs(apart[:, 1]),
+            (b[:, 0] - a[:, 0] - a[:, 2]) / unit,
+            np.abs((a[:, 1] + a[:, 3]) - (b[:, 1] + b[:, 3])) / unit,
+            middle / np.array(size),
+            np.log(unit / min(size)),
+            np.abs(contrast.mean(axis=1)),
+            np.abs(contrast[:, 2] - contrast[:, 1]),
+            np.abs(a[:, 5] - b[:, 5]),
+            np.abs(to_face[:, 0]),
+            to_face[:, 1],
+        ]
+    ).astype(np.float32)
+
+
+def _table(candidates: Sequence[Candidate]) -> NDArray[np.float64]:
+    """float64 (n, 9): box, score, strength, colour."""
+    return np.array([(*item.box, item.score, item.strength, *item.colour) for item in candidates], np.float64)
+
+
+def pair_numbers(
+    candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None
+) -> tuple[list[tuple[int, int]], Float]:
+    """All pairs of candidates that overlap at most `APART_IOU`, and their numbers, float32 (pairs, PAIR_COLUMNS)."""
+    boxes = np.array([item.box for item in candidates]).reshape(-1, 4)
+    overlap = pairwise_iou(boxes, boxes)
+    count = len(candidates)
+    pairs = [(i, j) for i in range(count) for j in range(i + 1, count) if overlap[i, j] <= APART_IOU]
+    first, second = [candidates[i] for i, _ in pairs], [candidates[j] for _, j in pairs]
+    return pairs, describe_pairs(first, second, size, face)
+
+
+def score_pairs(
+    trees: Trees, candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None
+) -> Float:
+    """float32 (n, n), symmetric, 0 to 1: how well each two candidates go together; 0 for those that overlap."""
+    together = np.zeros((len(candidates), len(candidates)), np.float32)
+    pairs, rows = pair_numbers(candidates, size, face)
+    if pairs:
+        first, second = np.array(pairs).T
+        together[first, second] = evaluate(trees, rows).clip(0.0, 1.0)
+    return np.maximum(together, together.T)

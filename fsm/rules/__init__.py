@@ -1,0 +1,1 @@
+"""When a sign counts: dwell, and signs that nobody read."""

@@ -1,0 +1,1 @@
+"""What another language needs to run the nets, trees and the language: flat files with test vectors."""

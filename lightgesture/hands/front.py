@@ -1,0 +1,142 @@
+"""The hand reader, a front end: find the hands, follow them, read them."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Any, Protocol, Self
+
+import numpy as np
+
+from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.find.settings import SelectorSettings
+from lightgesture.features.geometry import mirror_box
+from lightgesture.features.image import as_bgr8
+from lightgesture.features.track.state import Track
+from lightgesture.features.track.tracker import Tracker
+from lightgesture.features.types import Box, Candidates, Image
+from lightgesture.front_end import FrontEnd
+from lightgesture.fsm import UNSEEN, Sign, Signs
+from lightgesture.hands.memory import ReadingMemory
+from lightgesture.hands.pictures import draw_colour, draw_hands, draw_regions, draw_tracks
+from lightgesture.hands.reading import ReadingStage
+from lightgesture.records import Hand
+
+
+class Finder(Protocol):
+    """Finds regions that may be hands; `features.find.selector.RegionStage` is the product's own."""
+
+    settings: SelectorSettings
+
+    def process(self, colour: ColourMap) -> Candidates:
+        """Search one frame."""
+        ...
+
+    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+        """Look at predicted boxes alone, source pixels; None where it cannot but search."""
+        ...
+
+
+class HandReader(FrontEnd):
+    """Frames -> the signs of the diver's two bare or gloved hands.
+
+    Each stage may be another: read: names the token of each hand, the one stage that needs a model. find: colour map ->
+    candidates, by default the learned choice. colour: frame -> colour map. track, memory: make what remembers the hands
+    of one stream, where they are and what they showed. mirrored: the picture is a selfie camera's; boxes are told in
+    its own pixels.
+    """
+
+    def __init__(
+        self,
+        read: ReadingStage,
+        *,
+        find: Finder | None = None,
+        colour: ColourStage | None = None,
+        track: Callable[[], Tracker] | None = None,
+        memory: Callable[[], ReadingMemory] = ReadingMemory,
+        mirrored: bool = False,
+    ) -> None:
+        super().__init__()
+        self._read = read
+        self._find: Finder = find or RegionStage()
+        self._colour = colour or ColourStage()
+        self._make_track = track or (lambda: Tracker(selection=self._find.settings))
+        self._make_memory = memory
+        self._mirrored = mirrored
+        self._begin()
+
+    def _begin(self) -> None:
+        """What remembers the stream, and what was made of its last frame."""
+        self._track, self._memory = self._make_track(), self._make_memory()
+        self._upright: Image | None = None
+        self._map: ColourMap | None = None
+        self._candidates: Candidates | None = None
+        self._tracks: tuple[Track, ...] | None = None
+        self._hands: tuple[Hand, ...] = ()
+
+    def for_stream(self) -> Self:
+        """Another hand reader with the same stages, which has seen nothing yet."""
+        other = super().for_stream()
+        other._begin()
+        return other
+
+    def process(self, image: Image, time_s: float) -> Signs:
+        """The signs of both hands in the next frame; another size than before ends the tracks."""
+        upright, colour = self._look(image)
+        self.clock.lap("colour")
+        candidates, is_whole = self._search(colour, time_s)
+        self.clock.lap("regions")
+        self._tracks = self._track.update(candidates, time_s, whole=is_whole)
+        self.clock.lap("tracks")
+        # A track that was not seen now has a predicted box, and whatever is in it is no evidence.
+        seen = [track for track in self._tracks if track.missed == 0]
+        self._hands = self._read.process(upright, seen, candidates.face, self._memory, time_s)
+        self.clock.lap("classify")
+        self._candidates = candidates
+        return self._signs()
+
+    def recognize(self, image: Image) -> Signs:
+        """The signs of both hands in a picture on its own."""
+        upright, colour = self._look(image)
+        self._candidates, self._tracks = self._find.process(colour), None
+        chosen = choose(self._candidates, self._find.settings)
+        self._hands = self._read.process(upright, chosen, self._candidates.face)
+        return self._signs()
+
+    def shown(self) -> dict[str, tuple[Any, ...]]:
+        """The hands of the last frame, boxes in its own pixels."""
+        if not self._mirrored or self._upright is None:
+            return {"hands": self._hands}
+        width = self._upright.shape[1]
+        return {"hands": tuple(replace(hand, box=mirror_box(hand.box, width)) for hand in self._hands)}
+
+    def pictures(self) -> Iterator[tuple[str, Image]]:
+        """See FrontEnd; of a picture on its own there are no tracks."""
+        if self._upright is None or self._map is None or self._candidates is None:
+            return
+        yield "colour", draw_colour(self._map)
+        yield "regions", draw_regions(self._upright, self._candidates)
+        if self._tracks is not None:
+            yield "tracks", draw_tracks(self._upright, self._tracks)
+        yield "classify", draw_hands(self._upright, self._hands)
+
+    def _look(self, image: Image) -> tuple[Image, ColourMap]:
+        # A thermal camera's grey frames must reach the classifier in colours as well.
+        picture = as_bgr8(image)
+        self._upright = np.ascontiguousarray(picture[:, ::-1]) if self._mirrored else picture
+        self._map = self._colour.process(self._upright)
+        return self._upright, self._map
+
+    def _search(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
+        """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
+        what it should."""
+        followed = self._find.follow(colour, self._track.predict(time_s))
+        if followed is not None and self._track.explains(followed):
+            return followed, False
+        return self._find.process(colour), True
+
+    def _signs(self) -> Signs:
+        signs = {
+            hand.side: Sign(hand.token, hand.confidence, hand.probabilities, True, hand.reason)
+            for hand in self._hands
+        }
+        return Signs(signs.get("left", UNSEEN), signs.get("right", UNSEEN))

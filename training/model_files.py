@@ -1,0 +1,83 @@
+"""Writes the files that the application reads: models and the selector, each one archive, whole or not at all."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.features.archive import HEADER
+from lightgesture.features.find import selector_file
+from lightgesture.features.find.bank import bank_arrays
+from lightgesture.features.find.selector_file import Selector
+from lightgesture.features.find.trees import Trees
+from lightgesture.models import cnn_file, svm_file
+from lightgesture.models.cnn import CnnModel
+from lightgesture.models.svm_file import SvmModel
+from lightgesture.results.atomic import replacing
+from lightgesture.training.nets.flatbuffer import network_arrays
+
+
+def write_cnn_model(model: CnnModel, path: Path) -> None:
+    """Write the file of a hand net. Raises UsageError where the place cannot be written."""
+    header = {
+        "format": cnn_file.FORMAT,
+        "kind": cnn_file.KIND,
+        "classes": list(model.classes),
+        "patch": asdict(model.patch),
+        "contour": None if model.contour is None else asdict(model.contour),
+        "temperature": model.temperature,
+        "smallest_hand": model.smallest_hand,
+    }
+    numbers = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
+    _write(path, header, {**network_arrays(cnn_file.NET, model.network), **numbers})
+
+
+def write_svm_model(model: SvmModel, path: Path) -> None:
+    """Write the file of a support vector machine. Raises UsageError where the place cannot be written."""
+    header = {
+        "format": svm_file.FORMAT,
+        "kind": svm_file.KIND,
+        "classes": list(model.classes),
+        "features": asdict(model.features),
+        "gamma": model.gamma,
+        "temperature": model.temperature,
+        "smallest_hand": model.smallest_hand,
+    }
+    arrays = {name: getattr(model, name).astype(kind) for name, kind in svm_file.ARRAYS.items()}
+    _write(path, header, arrays)
+
+
+def write_selector(selector: Selector, path: Path) -> None:
+    """Write the selector's file. Raises UsageError where the place cannot be written."""
+    learned, classical = selector.learned, selector.classical
+    arrays = {
+        **_tree_arrays("regions", classical.regions),
+        **_tree_arrays("region_pairs", classical.pairs),
+        **bank_arrays("bank", classical.bank),
+        **_tree_arrays("places", learned.places),
+        **_tree_arrays("place_pairs", learned.pairs),
+        **network_arrays("locator", learned.locator),
+        **network_arrays("refiner", learned.refiner),
+    }
+    _write(path, {"format": selector_file.FORMAT, "kind": selector_file.KIND}, arrays)
+
+
+def write_json(content: Mapping[str, Any], path: Path) -> None:
+    """Write a model's card. Raises UsageError where the place cannot be written."""
+    with replacing(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
+def _tree_arrays(part: str, trees: Trees) -> dict[str, NDArray[Any]]:
+    names = (*selector_file.TREE_ARRAYS, *selector_file.TREE_NUMBERS)
+    return {f"{part}_{name}": np.asarray(getattr(trees, name)) for name in names}
+
+
+def _write(path: Path, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
+    every: dict[str, Any] = {HEADER: np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays}
+    with replacing(path) as temporary, temporary.open("wb") as stream:
+        np.savez_compressed(stream, **every)

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.features.types import Box, Image
-from lightgesture.fsm.schema import TOKEN
+from lightgesture.fsm.language.schema import TOKEN
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.datasets import LANDMARK_MARGIN, grow_box
 

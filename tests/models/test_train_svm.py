@@ -130,6 +130,14 @@ def test_the_temperature_undoes_a_scale(scale: float) -> None:
     assert fit_temperature(scores, truth) == pytest.approx(scale, rel=0.06)
 
 
+@pytest.mark.parametrize("count", [30, 1000])
+def test_right_answers_alone_are_no_reason_to_be_sure(count: int) -> None:
+    scores = np.tile(np.array([[1.0, -1.0, -1.0]], np.float32), (count, 1))
+    temperature = fit_temperature(scores, np.zeros(count, int))
+    sure = 1.0 / (1.0 + 2.0 * np.exp(-2.0 / temperature))
+    assert sure == pytest.approx((count + 1) / (count + 2), abs=0.2 / count)
+
+
 def test_wrong_samples_are_refused(samples: list[TrainingSample], quick: SvmSettings) -> None:
     with pytest.raises(ModelError, match="no samples"):
         train_svm([], quick)

@@ -50,7 +50,6 @@ def test_folders_become_a_model_and_its_card(
     assert "wrote" in captured.err
 
 
-@pytest.mark.slow
 def test_steps_are_told_as_lines(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert train(folder, tmp_path / "mine.npz") == 0
     told = capsys.readouterr().err.splitlines()

@@ -14,7 +14,7 @@ from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
-from lightgesture.models import load_classifier
+from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord
 from lightgesture.threads import OneBlasThread
@@ -80,6 +80,14 @@ class Pipeline:
         self.front, self.decoder = front, decoder
         self._frames, self._one_thread = frames, OneBlasThread()
         self._begin(source, debug)
+
+    def check_language(self) -> str | None:
+        """A line that warns of signs that the grammar does not know; None where it knows all that is read.
+
+        Raises lightgesture.models.ModelError where the grammar has tokens that are never read.
+        """
+        tokens = self.front.tokens
+        return None if tokens is None else check_classes(tokens, self.decoder.grammar.tokens)
 
     def for_stream(self, source: str | None, debug: PictureSink | None = None) -> Self:
         """Another pipeline of the same settings, for another stream, with what this one has loaded.

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from typing import Final
 
-from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus
@@ -45,7 +45,7 @@ def run_live(
     report = _make_report()
     clock = _make_clock()
     mailbox = Mailbox()
-    pipeline = open_pipeline(_for_pipeline(settings), source.name, debug)
+    pipeline = open_stream(_for_pipeline(settings), source.name, debug, report)
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())

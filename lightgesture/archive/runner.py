@@ -10,8 +10,8 @@ from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Task
-from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Remarked, Task
+from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
@@ -49,19 +49,19 @@ class Runner:
         """
         start = time.perf_counter()
         debug = make_debug_pictures(self._settings, task.stem)
-        pipeline = self._open_pipeline(task.name, debug)
+        pipeline = self._open_pipeline(task, debug, hear)
         try:
             outcome = _Work(task, self._settings, pipeline, debug, self._encoding, hear).run()
         except InputError as error:
             outcome = Outcome("failed", str(error))
         return replace(outcome, seconds=time.perf_counter() - start)
 
-    def _open_pipeline(self, name: str, debug: DebugPictures | None) -> Pipeline:
+    def _open_pipeline(self, task: Task, debug: DebugPictures | None, hear: Hear) -> Pipeline:
         if self._pipeline is None:
             needs_frames = self._settings.frames or self._settings.annotate or self._settings.plot
             settings = self._settings.model_copy(update={"frames": needs_frames})
-            self._pipeline = open_pipeline(settings, None, None)
-        return self._pipeline.for_stream(name, debug)
+            self._pipeline = open_stream(settings, None, None, lambda text: hear(Remarked(task.place, text)))
+        return self._pipeline.for_stream(task.name, debug)
 
 
 class _Work:

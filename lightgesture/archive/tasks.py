@@ -94,7 +94,15 @@ class Done:
     outcome: Outcome
 
 
-Message = Opened | Advanced | Printed | Done
+@dataclass(frozen=True, slots=True)
+class Remarked:
+    """Something to be told once, whichever inputs it comes with."""
+
+    place: int
+    text: str
+
+
+Message = Opened | Advanced | Printed | Remarked | Done
 Hear = Callable[[Message], None]
 """Takes the messages of all inputs, in the order in which they come about."""
 

@@ -1,5 +1,6 @@
 """From settings to a pipeline and to output folders, with what is wrong told as a UsageError."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from lightgesture.config.settings import DecodeSettings
@@ -10,6 +11,23 @@ from lightgesture.fsm import GrammarError
 from lightgesture.models import ModelError
 from lightgesture.pipeline import Pipeline
 from lightgesture.results import DebugPictures
+
+
+def open_stream(
+    settings: DecodeSettings, source: str | None, debug: DebugPictures | None, remark: Callable[[str], None]
+) -> Pipeline:
+    """As `open_pipeline`, for frames that follow each other: their signs become words.
+
+    remark: is told of signs that the grammar does not know. UsageError: also where it has tokens that are never read.
+    """
+    pipeline = open_pipeline(settings, source, debug)
+    try:
+        warning = pipeline.check_language()
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if warning is not None:
+        remark(warning)
+    return pipeline
 
 
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:

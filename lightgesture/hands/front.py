@@ -57,6 +57,7 @@ class HandReader(FrontEnd):
     ) -> None:
         super().__init__()
         self._read = read
+        self.tokens = read.classes
         self._find: Finder = find or RegionStage()
         self._colour = colour or ColourStage()
         self._make_track = track or (lambda: Tracker(selection=self._find.settings))

@@ -127,6 +127,11 @@ class ReadingStage:
         self._classifier = classifier
         self._settings = settings or ReadingSettings()
 
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """What the classifier tells apart."""
+        return tuple(self._classifier.classes)
+
     def process(
         self,
         image: Image,

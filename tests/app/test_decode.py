@@ -250,3 +250,13 @@ def test_globs_in_natural_order(run, make_video, tmp_path):
     result = run("decode", tmp_path / "dive*.avi", tmp_path / "dive9.avi", "--json")
     sources = [record["source"] for record in records(result.out) if record["type"] == "summary"]
     assert sources == [str(tmp_path / "dive9.avi"), str(tmp_path / "dive10.avi")]
+
+
+def test_a_remark_of_all_inputs_is_told_once(run, make_video, monkeypatch, fake):
+    monkeypatch.setattr(fake, "unknown", True)
+    videos = [make_video(name) for name in ("a.avi", "b.avi")]
+    result = run("decode", *videos)
+    assert [line for line in result.err if "does not know: shaka" in line] == [
+        "lightgesture: classes of the model that the grammar does not know: shaka"
+    ]
+    assert not [line for line in run("decode", *videos, "--quiet").err if "shaka" in line]

@@ -13,7 +13,8 @@ from pathlib import Path
 from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Remarked, Task
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
-from lightgesture.errors import InputError
+from lightgesture.console import ReaderGoneError
+from lightgesture.errors import InputError, UsageError, defect_of
 from lightgesture.frames import Frame
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, Record, SummaryRecord
@@ -54,6 +55,11 @@ class Runner:
             outcome = _Work(task, self._settings, pipeline, debug, self._encoding, hear).run()
         except InputError as error:
             outcome = Outcome("failed", str(error))
+        except (UsageError, ReaderGoneError, BrokenPipeError, ModuleNotFoundError):
+            raise
+        except Exception as error:
+            # A stage, ours or one that was given, must not take the other inputs with it.
+            outcome = Outcome("failed", f"{task.name}: {defect_of(error)}")
         return replace(outcome, seconds=time.perf_counter() - start)
 
     def _open_pipeline(self, task: Task, debug: DebugPictures | None, hear: Hear) -> Pipeline:

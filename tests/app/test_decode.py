@@ -260,3 +260,21 @@ def test_a_remark_of_all_inputs_is_told_once(run, make_video, monkeypatch, fake)
         "lightgesture: classes of the model that the grammar does not know: shaka"
     ]
     assert not [line for line in run("decode", *videos, "--quiet").err if "shaka" in line]
+
+
+def test_a_stage_that_raises_fails_its_input_in_one_line(run, make_video, monkeypatch, fake, tmp_path):
+    process = fake.process
+
+    def raise_once(self, image, time_s, index=None):
+        if self.source.endswith("a.avi") and index == 1:
+            raise ZeroDivisionError("of a stage")
+        return process(self, image, time_s, index)
+
+    monkeypatch.setattr(fake, "process", raise_once)
+    videos = [make_video(name) for name in ("a.avi", "b.avi")]
+    result = run("decode", *videos, "--out", tmp_path / "out")
+    assert result.status == ExitStatus.SOME_FAILED
+    (line,) = [line for line in result.err if "a.avi: " in line]
+    assert "broke off at a defect (ZeroDivisionError: of a stage; test_decode.py, line " in line
+    assert sorted(path.stem for path in (tmp_path / "out").glob("*.jsonl")) == ["b"]
+    assert not list((tmp_path / "out").glob("*a*"))

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import UsageError
-from lightgesture.models import ModelError, TrainingSample, load_classifier
+from lightgesture.models import ModelError, load_classifier
 from lightgesture.models.svm_file import SvmModel, read_svm_model
 from lightgesture.training.model_files import write_svm_model
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.candidates import (
     APART_IOU,
-    Candidate,
+    Rows,
     best_distinct,
+    candidate_rows,
     describe_places,
     score_pairs,
 )
@@ -83,21 +84,13 @@ class LearnedSelector:
         return Candidates(regions_at(colour, refined.boxes[kept], scores), together, colour.source_size)
 
 
-def scored_places(
-    colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float
-) -> tuple[list[int], list[Candidate]]:
+def scored_places(colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float) -> tuple[list[int], Rows]:
     """Numbers of the distinct places, best first, and what their pairs need."""
     kept = best_distinct(pairwise_iou(refined.boxes, refined.boxes), scores)
-    items = [
-        Candidate(
-            refined.boxes[index],
-            float(scores[index]),
-            float(peaks.heat[index]),
-            mean_colour(colour, refined.boxes[index]),
-        )
-        for index in kept
-    ]
-    return kept, items
+    boxes = refined.boxes[kept]
+    return kept, candidate_rows(
+        boxes, scores[kept], peaks.heat[kept], [mean_colour(colour, box) for box in boxes]
+    )
 
 
 def mean_colour(colour: ColourMap, box: Float) -> Float:

@@ -33,13 +33,13 @@ AXIS_CERTAINTY: Final = 0.9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """What a track found: the region that has the number `index` among the candidates. extent: the box of the region
-    that is nearest to what was expected; squared: its squared Mahalanobis distance; leap: whether it is beyond the
-    gate."""
+    """What a track found: the region that has the number `index` among the candidates. extent: which of the region's
+    extents is nearest to what was expected, 0 its box, then its alternatives; squared: its squared Mahalanobis
+    distance; leap: whether it is beyond the gate."""
 
     index: int
     region: HandRegion
-    extent: Box
+    extent: int
     squared: float
     leap: bool
 
@@ -111,9 +111,10 @@ def begin(key: int, index: int, region: HandRegion, now: float) -> Track:
 def seen(track: Track, match: Match, now: float, step: float) -> Track:
     """The predicted track after it found its region; after a leap what was known of its motion is void."""
     region = match.region
+    nearest = (region.box, *region.alternatives)[match.extent]
     return replace(
         track,
-        motion=start_box(region.box) if match.leap else update_box(track.motion, match.extent),
+        motion=start_box(region.box) if match.leap else update_box(track.motion, nearest),
         box=region.box,
         region=match.index,
         confidence=region.confidence,

@@ -1,7 +1,9 @@
 """From settings to a pipeline and to output folders, with what is wrong told as a UsageError."""
 
 from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
+from typing import Final
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
@@ -11,6 +13,11 @@ from lightgesture.fsm import GrammarError
 from lightgesture.models import ModelError
 from lightgesture.pipeline import Pipeline
 from lightgesture.results import DebugPictures
+
+PIPELINE_OPTIONS: Final = tuple(
+    name for name in signature(Pipeline).parameters if name in DecodeSettings.model_fields
+)
+"""Options that are keywords of `Pipeline` too, under the same names."""
 
 
 def open_stream(
@@ -36,18 +43,8 @@ def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPict
     UsageError: the model, the selector's data, the colour profile or the grammar is wrong.
     """
     try:
-        return Pipeline(
-            model=settings.model,
-            selector=settings.selector,
-            profile=settings.profile,
-            hold=settings.hold,
-            hold_seconds=settings.hold_seconds,
-            grammar=settings.grammar,
-            mirrored=settings.mirrored,
-            source=source,
-            frames=settings.frames,
-            debug=debug,
-        )
+        options = {name: getattr(settings, name) for name in PIPELINE_OPTIONS}
+        return Pipeline(**options, source=source, debug=debug)
     except (ModelError, SelectorError, ProfileError, GrammarError) as error:
         raise UsageError(str(error)) from error
 

@@ -22,7 +22,6 @@ from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.find.selector import RegionStage
 from lightgesture.features.find.selector_file import (
     BUNDLED,
-    Selector,
     SelectorError,
     load_classical,
     load_learned,
@@ -167,7 +166,7 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     file = tmp_path / "fold.npz"
     parts = load_learned()
     own = replace(parts, **{name: altered(getattr(parts, name)) for name in ("places", "pairs")})
-    write_selector(Selector(load_classical(), own), file)
+    write_selector(load_classical(), own, file)
     card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")

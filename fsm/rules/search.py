@@ -1,0 +1,434 @@
+"""Many readings of one sentence at once: token passing through the grammar's table.
+
+A reading is the words so far and the sign of the last one. In every frame it is either in that sign or in the gap after
+it, and its score is that of the best way to cut the frames into signs and gaps (Young, Russell and Thornton, "Token
+passing: a simple conceptual model for connected speech recognition systems", Cambridge 1989). A sign lasts `hold_s` at
+least, so that a word enters with the scores of that long a window at once. Beside them runs the free loop, the best score
+of any signs in any order, words or not; how far a reading stays behind it tells whether it fits what was shown
+(utterance verification, as Rose and Paul, ICASSP 1990).
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.language.grammar import Grammar
+from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.scores import GAP_SCORE, RATE, SignScores
+
+COST: Final = 0.5
+"""What every word costs, in units of score: against readings that change their mind for a moment."""
+
+SHORT_COST: Final = 1.5
+"""What a word costs that has just reached its least length, given back while it is held on: a sign is held longer."""
+
+SHORT_S: Final = 0.25
+"""Seconds beyond the least length after which it is all given back."""
+
+RELEASE_S: Final = 0.1
+"""Seconds that a sign must be gone before it is the next word again."""
+
+RELEASE_SCORE: Final = 1.0
+"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average while it is gone."""
+
+BEAM: Final = 12.0
+"""How far behind the free loop a reading may be before it is given up, in units of score."""
+
+MOST: Final = 40
+"""Readings that are kept, the best ones: bounds time and memory."""
+
+LIKELY: Final = 0.04
+"""Geometric mean probability of a sign over the least length, 0 to 1, below which no word begins with it."""
+
+ROWS: Final = 160
+"""Frames that are remembered."""
+
+SPACING_S: Final = 0.008
+"""Least seconds between two of them: a faster camera's frames share one, so that ROWS is enough."""
+
+NEVER: Final = -1e18
+"""A score that nothing comes back from, and that arithmetic stays finite with."""
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Spoken:
+    """A word of a reading: when its sign began, and how well it was seen.
+
+    sure: greatest geometric mean of its probabilities of one hand over the least length, 0 to 1; of the last word,
+    which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began.
+    """
+
+    word: str
+    column: int
+    frame: int
+    time_s: float
+    behind: float
+    sure: float = 0.0
+
+
+@dataclass(slots=True)
+class Reading:
+    """A hypothesis. began: when its first word did, seconds of the search. touched: when the last one entered.
+
+    state: of the grammar's table; before: the state that the last word led from. asked: words of which the diver was
+    asked to show the last sign again, so that they replace it.
+    """
+
+    spoken: tuple[Spoken, ...]
+    state: int
+    before: int
+    began: float
+    touched: float
+    text: int
+    asked: frozenset[str] = frozenset()
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        return tuple(spoken.word for spoken in self.spoken)
+
+
+class Search:
+    """The readings of one stream, by slot; what changes in every frame lies in arrays over the slots.
+
+    held, gap: the score of a reading in its last sign, and in the gap after it. sure: summed scores of the best window of
+    that sign. bridged: seconds with both hands in view since the sign was last the better of the two; longest: the most
+    of it so far. credit: what of SHORT_COST is still to be given back.
+    """
+
+    def __init__(self, grammar: Grammar, hold_s: float) -> None:
+        self._grammar = grammar
+        self._join = grammar.vocabulary.join
+        self.hold_s = hold_s
+        self.scores = SignScores(grammar)
+        self._span = hold_s * RATE
+        self._spacing = max(SPACING_S, (hold_s + RELEASE_S) * 1.5 / ROWS)
+        self._idle = self._columns(grammar.idle_words, set(grammar.table.transitions[0]))
+        inside = {word for row in grammar.table.transitions[1:] for word in row}
+        self._inside = self._columns({**grammar.sentence_words}, inside)
+        for column, words in self._columns(grammar.menu_words, inside).items():
+            self._inside[column] = tuple(dict.fromkeys((*self._inside.get(column, ()), *words)))
+        self._idle_columns = np.array(sorted(self._idle), np.intp)
+        self._inside_columns = np.array(sorted(self._inside), np.intp)
+        self._column = np.zeros(MOST, np.intp)
+        self.reset()
+
+    def _columns(self, pairs: Mapping[tuple[str, str], str], words: set[str]) -> dict[int, tuple[str, ...]]:
+        """The words of each column that lead anywhere, those that say themselves too."""
+        found = {self.scores.column(pair): (word,) for pair, word in pairs.items() if word in words}
+        found.update({self.scores.column((word,)): (word,) for word in words & {*self.scores.words}})
+        return found
+
+    def reset(self) -> None:
+        """As at the start of a stream."""
+        size = self.scores.size
+        self.now = 0.0
+        self._count = 0
+        self._base = self._earlier = -1
+        self._times = [0.0] * ROWS
+        self._stamps = [(0, 0.0)] * ROWS
+        self._row = np.zeros((ROWS, size))
+        self._sum, self._gap_sum = np.zeros(size), 0.0
+        self._gap_row, self._top_row, self._free_row = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
+        self._top_sum = 0.0
+        self._free_signs, self._free_gap = np.full(size, NEVER), 0.0
+        self.free = 0.0
+        self.window: Floats | None = None
+        self._best_row, self._longest_row = np.full((ROWS, MOST), NEVER), np.zeros((ROWS, MOST))
+        self.clear()
+
+    def clear(self) -> None:
+        """Give up all readings; what is shown now opens a sentence only if it goes on for the least length."""
+        self.readings: list[Reading | None] = [None] * MOST
+        self._slots: dict[tuple[tuple[str, ...], int], int] = {}
+        self._texts: dict[str, int] = {}
+        self._text = np.full(MOST, -1)
+        self.held, self.gap = np.full(MOST, NEVER), np.full(MOST, NEVER)
+        self.best = np.full(MOST, NEVER)
+        self.sure = np.full(MOST, NEVER)
+        self.bridged, self.longest, self.credit = np.zeros(MOST), np.zeros(MOST), np.zeros(MOST)
+        self._best_row.fill(NEVER)
+        self._cleared = self.now
+        self.lead: int | None = None
+
+    # One frame
+
+    def step(self, scores: Floats, passed_s: float, in_view_s: float, frame: int, time_s: float) -> None:
+        """Take in a frame's scores, which stand for `passed_s` seconds; in_view_s: of them, those with hands in view."""
+        self.now += passed_s
+        weight = passed_s * RATE
+        add, gap_add = scores * weight, GAP_SCORE * weight
+        self._sum = self._sum + add
+        self._gap_sum += gap_add
+        self._top_sum += max(float(add.max()), gap_add)
+        row = self._next_row(frame, time_s)
+        self._row[row] = self._sum
+        self._gap_row[row], self._top_row[row] = self._gap_sum, self._top_sum
+        self._base = self._follow(self._base, self.now - self.hold_s)
+        self._earlier = self._follow(self._earlier, self.now - self.hold_s - RELEASE_S)
+        self.window = None if self._base < 0 else self._sum - self._row[self._base % ROWS]
+        self._step_free(add, gap_add)
+        self._free_row[row] = self.free
+        if self._slots:
+            self._step_readings(add, gap_add, passed_s, in_view_s)
+        self._best_row[row], self._longest_row[row] = self.best, self.longest
+        if self.window is not None:
+            self._extend(self.window)
+        if self._slots:
+            self._prune()
+
+    def _next_row(self, frame: int, time_s: float) -> int:
+        """The row of this frame: a new one, or the last again where they come too fast."""
+        if self._count < 2 or self.now - self._times[(self._count - 2) % ROWS] >= self._spacing:
+            self._count += 1
+        row = (self._count - 1) % ROWS
+        self._times[row], self._stamps[row] = self.now, (frame, time_s)
+        return row
+
+    def _follow(self, place: int, time: float) -> int:
+        """The number of the last row not after `time`, from the one before; -1 where there is none yet."""
+        while place + 1 < self._count - 1 and self._times[(place + 1) % ROWS] <= time + 1e-3:
+            place += 1
+        return place
+
+    def _step_free(self, add: Floats, gap_add: float) -> None:
+        """The best of all signs in any order, each as long as a word at least."""
+        self._free_gap = max(self._free_gap, float(self._free_signs.max())) + gap_add
+        self._free_signs += add
+        if self.window is not None:
+            entered = self.window + (self._free_row[self._base % ROWS] - COST)
+            np.maximum(self._free_signs, entered, out=self._free_signs)
+        self.free = max(self._free_gap, float(self._free_signs.max()))
+
+    def _step_readings(self, add: Floats, gap_add: float, passed_s: float, in_view_s: float) -> None:
+        """Every reading goes on: in its sign, or in the gap."""
+        column = self._column
+        np.maximum(self.gap, self.held, out=self.gap)
+        self.gap += gap_add
+        back = np.minimum(self.credit, passed_s * (SHORT_COST / SHORT_S))
+        self.credit -= back
+        self.held += add[column]
+        self.held += back
+        is_held = self.held >= self.gap
+        if self.window is not None:
+            np.maximum(self.sure, self.window[column], out=self.sure, where=is_held)
+        self.bridged += in_view_s
+        self.bridged[is_held] = 0.0
+        np.maximum(self.longest, self.bridged, out=self.longest)
+        np.maximum(self.held, self.gap, out=self.best)
+
+    # New words
+
+    def _extend(self, window: Floats) -> None:
+        """Signs that were likely for the least length become words of the readings that they fit."""
+        least = 2 * self._span * float(np.log(LIKELY))
+        base = self._base % ROWS
+        if self._times[base] >= self._cleared:
+            likely = self._idle_columns[window[self._idle_columns] > least]
+            for column in likely.tolist():
+                score = self._free_row[base] + window[column] - COST - SHORT_COST
+                for word in self._idle[column]:
+                    self._open(column, word, float(score), base)
+        if not self._slots:
+            return
+        likely = self._inside_columns[window[self._inside_columns] > least]
+        if not len(likely):
+            return
+        entered = self._best_row[base] - (COST + SHORT_COST)
+        floor = self.free - BEAM
+        for column in likely.tolist():
+            gain = window[column]
+            for slot in np.flatnonzero(entered + gain > floor).tolist():
+                reading = self.readings[slot]
+                if reading is None:
+                    continue
+                if self._column[slot] != column:
+                    self._continue(slot, reading, column, float(entered[slot] + gain), base)
+                elif (score := self._again(slot, column)) is not None:
+                    self._continue(slot, reading, column, score + float(gain), self._earlier % ROWS)
+
+    def _again(self, slot: int, column: int) -> float | None:
+        """The score with which a reading's last sign may come again; None where it was not released before."""
+        if self._earlier < 0:
+            return None
+        base, earlier = self._base % ROWS, self._earlier % ROWS
+        of_sign = self._row[base, column] - self._row[earlier, column]
+        of_top = self._top_row[base] - self._top_row[earlier]
+        if of_top - of_sign < RELEASE_SCORE * RATE * RELEASE_S:
+            return None
+        of_gap = self._gap_row[base] - self._gap_row[earlier]
+        return float(self._best_row[earlier, slot] + of_gap - COST - SHORT_COST)
+
+    def _spoken(self, word: str, column: int, base: int, behind: float) -> Spoken:
+        """A word whose sign begins after the row `base`."""
+        frame, time_s = self._stamps[(base + 1) % ROWS]
+        return Spoken(word, column, frame, time_s, behind)
+
+    def _open(self, column: int, word: str, score: float, base: int) -> None:
+        """A word opens a sentence, whatever was shown before."""
+        spoken = (self._spoken(word, column, base, 0.0),)
+        state = self._grammar.table.transitions[0].get(word)
+        if state is not None:
+            self._enter(spoken, state, 0, self._times[base], score, 0.0, column)
+
+    def _continue(self, slot: int, reading: Reading, column: int, score: float, base: int) -> None:
+        """A word goes on with a reading, where the table has it, or replaces the last one that was asked for again."""
+        if score <= self.free - BEAM:
+            return
+        for word in self._inside[column]:
+            behind = float(self._free_row[base] - self._best_row[base, slot])
+            spoken = self._spoken(word, column, base, behind)
+            last = reading.spoken[-1]
+            if word in reading.asked:
+                target = self._grammar.table.transitions[reading.before][word]
+                earlier, before = reading.spoken[:-1], reading.before
+            else:
+                following = self._grammar.table.transitions[reading.state].get(word)
+                if following is None or len(reading.spoken) >= self._grammar.limits.max_words:
+                    continue
+                sure = self.certainty(slot)
+                kept = Spoken(last.word, last.column, last.frame, last.time_s, last.behind, sure)
+                target, earlier, before = following, (*reading.spoken[:-1], kept), reading.state
+            longest = float(self._longest_row[base, slot])
+            self._enter((*earlier, spoken), target, before, reading.began, score, longest, column)
+
+    def _enter(
+        self,
+        spoken: tuple[Spoken, ...],
+        state: int,
+        before: int,
+        began: float,
+        score: float,
+        longest: float,
+        column: int,
+    ) -> None:
+        """Keep a reading with a new word, unless the same one is already there with a better score."""
+        words = tuple(item.word for item in spoken)
+        key = words, column
+        slot = self._slots.get(key)
+        if slot is not None:
+            if score <= self.best[slot]:
+                return
+        else:
+            slot = self._free_slot(score)
+            if slot is None:
+                return
+            self._slots[key] = slot
+            self.gap[slot] = NEVER
+            self._best_row[:, slot] = NEVER
+        text = self._texts.setdefault(spell(words, self._join), len(self._texts))
+        self.readings[slot] = Reading(spoken, state, before, began, self.now, text)
+        self._text[slot], self._column[slot] = text, column
+        self.held[slot] = self.best[slot] = score
+        self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, longest
+        self.sure[slot] = NEVER if self.window is None else self.window[column]
+
+    def _free_slot(self, score: float) -> int | None:
+        """A slot for a new reading, at need that of the worst one; None where all are better."""
+        slot = int(self.best.argmin())
+        if self.readings[slot] is not None:
+            if self.best[slot] >= score:
+                return None
+            self._drop(slot)
+        return slot
+
+    def _drop(self, slot: int) -> None:
+        reading = self.readings[slot]
+        if reading is not None:
+            del self._slots[reading.words, int(self._column[slot])]
+        self.readings[slot] = None
+        self._text[slot] = -1
+        self.best[slot] = self.held[slot] = self.gap[slot] = NEVER
+
+    def _prune(self) -> None:
+        """Give up what is far behind, and find what leads."""
+        far = self.free - BEAM
+        for slot in np.flatnonzero((self.best < far) & (self._text >= 0)).tolist():
+            self._drop(slot)
+        self.lead = int(self.best.argmax()) if self._slots else None
+
+    # What the readings say
+
+    def certainty(self, slot: int) -> float:
+        """How well the last sign of a reading was seen: `Spoken.sure` of its last word."""
+        return float(np.exp(self.sure[slot] / (2 * self._span)))
+
+    def certainties(self, slot: int) -> list[float]:
+        """The same of all its words."""
+        reading = self.readings[slot]
+        return [] if reading is None else [*(item.sure for item in reading.spoken[:-1]), self.certainty(slot)]
+
+    def margin(self, slot: int) -> float:
+        """How far the best reading with another text is behind this one, in units of score."""
+        others = self.best[(self._text != self._text[slot]) & (self._text >= 0)]
+        return float(self.best[slot] - others.max()) if len(others) else -NEVER
+
+    def misfit(self, slot: int) -> tuple[float, int]:
+        """How far a reading fell behind the free loop within one word and the gap before it, at most, and which."""
+        reading = self.readings[slot]
+        if reading is None:
+            return 0.0, 0
+        marks = [*(item.behind for item in reading.spoken), self.behind(slot)]
+        steps = [after - before for before, after in zip(marks, marks[1:], strict=False)]
+        worst = max(range(len(steps)), key=steps.__getitem__)
+        return steps[worst], worst
+
+    @property
+    def window_s(self) -> float:
+        """When the window began over which `window` adds up, seconds of the search."""
+        return self._times[self._base % ROWS]
+
+    def likelihood(self, column: int) -> float:
+        """Geometric mean probability of a sign over the window, 0 to 1."""
+        return 0.0 if self.window is None else float(np.exp(self.window[column] / (2 * self._span)))
+
+    def is_over(self, slot: int) -> bool:
+        """Whether the last sign of a reading has gone."""
+        return bool(self.gap[slot] > self.held[slot])
+
+    def behind(self, slot: int) -> float:
+        """How far a reading is behind the free loop, in units of score, without what its last word is still owed."""
+        return float(self.free - self.best[slot] - self.credit[slot])
+
+    def near(self, slot: int, margin: float) -> Iterator[Reading]:
+        """The readings that are at most `margin` behind this one, it included."""
+        for other in np.flatnonzero(self.best >= self.best[slot] - margin).tolist():
+            reading = self.readings[other]
+            if reading is not None:
+                yield reading
+
+    def rival(self, slot: int) -> str:
+        """The text of the best reading with another text than this one; empty where there is none."""
+        others = np.where(self._text != self._text[slot], self.best, 2 * NEVER)
+        reading = self.readings[int(others.argmax())]
+        return "" if reading is None else spell(reading.words, self._join)
+
+    def has_prefix(self, words: tuple[str, ...]) -> bool:
+        """Whether some reading begins with these words."""
+        count = len(words)
+        lead = None if self.lead is None else self.readings[self.lead]
+        if lead is not None and lead.words[:count] == words:
+            return True
+        return any(reading is not None and reading.words[:count] == words for reading in self.readings)
+
+    def ask(self, count: int, words: frozenset[str]) -> None:
+        """In readings of so many words, one of `words` replaces the last one when it is shown again."""
+        for reading in self.readings:
+            if reading is not None and len(reading.spoken) == count and reading.words[-1] in words:
+                reading.asked = words
+
+    def hold(self, column: int, confidence: float) -> Hold:
+        """A sign that was shown over the window."""
+        frame, time_s = self._stamps[(self._base + 1) % ROWS]
+        return Hold(
+            pair=self.scores.shown(column),
+            frames=1,
+            confidence=confidence,
+            first_frame=frame,
+            first_time_s=time_s,
+        )

@@ -21,13 +21,19 @@ LEAST: Final = 0.01
 """Smallest probability of a token, 0 to 1: no single look may forbid a reading."""
 
 HIDDEN: Final = 0.05
-"""Probability of every token of a hand that is not in view, 0 to 1: less than of a doubtful one, more than of a wrong one."""
+"""Probability of every token of a hand that is not in view, 0 to 1: between doubtful and wrong."""
 
 GAP: Final = 0.2
 """Probability, of one hand, of whatever is shown between two signs, 0 to 1: a sign must be clearer than this."""
 
 GAP_SCORE: Final = 2 * math.log(GAP)
 """The same of both hands, as a score."""
+
+SLACK: Final = 0.01
+"""By how much the probabilities of one hand may sum to more than one, rounded as they are."""
+
+_LEAST_SCORE: Final = math.log(LEAST)
+_HIDDEN_SCORE: Final = math.log(HIDDEN)
 
 
 class SignScores:
@@ -44,8 +50,8 @@ class SignScores:
         self._pairs = len(grammar.tokens) ** 2
         self.size = self._pairs + len(self.words)
         self._cards = {word: self._pairs + place for place, word in enumerate(self.words)}
-        self._hidden = np.full(len(grammar.tokens), math.log(HIDDEN))
-        self._last: dict[int, tuple[Sign | None, Scores]] = {0: (None, self._hidden), 1: (None, self._hidden)}
+        self._hidden = [_HIDDEN_SCORE] * len(grammar.tokens)
+        self._last: list[tuple[Sign | None, list[float]]] = [(None, self._hidden), (None, self._hidden)]
 
     def column(self, shown: Sequence[str]) -> int:
         """The column of a pair, or of one word that says itself."""
@@ -60,23 +66,28 @@ class SignScores:
         left, right = divmod(column, len(self._tokens))
         return self._tokens[left], self._tokens[right]
 
-    def of(self, signs: Signs) -> Scores:
-        """The scores of one frame, each between 2 log LEAST and 0."""
-        scores = np.full(self.size, 2 * math.log(LEAST))
+    def of(self, signs: Signs) -> tuple[Scores, Scores]:
+        """The scores of one frame, each between 2 log LEAST and 0, and the left hand's part of them.
+
+        A card's score stands for two hands that agree.
+        """
+        scores = np.full(self.size, 2 * _LEAST_SCORE)
         if signs.left.is_word or signs.right.is_word:
             shown = signs.shown
             if shown is not None and shown[0] in self._cards:
-                scores[self._cards[shown[0]]] = 2 * math.log(_bounded(signs.confidence))
-            return scores
+                scores[self._cards[shown[0]]] = 2 * _score(signs.confidence)
+            return scores, scores / 2
         if not (signs.left.seen or signs.right.seen):
-            scores.fill(2 * math.log(HIDDEN))
-            return scores
-        left, right = self._hand(0, signs.left), self._hand(1, signs.right)
+            scores.fill(2 * _HIDDEN_SCORE)
+            return scores, scores / 2
+        left, right = np.array(self._hand(0, signs.left)), self._hand(1, signs.right)
         scores[: self._pairs] = np.add.outer(left, right).ravel()
-        return scores
+        of_left = np.full(self.size, _LEAST_SCORE)
+        of_left[: self._pairs] = np.repeat(left, len(right))
+        return scores, of_left
 
-    def _hand(self, hand: int, sign: Sign) -> Scores:
-        """The scores of the tokens of one hand, (tokens,); those of the same sign as in the last frame are kept."""
+    def _hand(self, hand: int, sign: Sign) -> list[float]:
+        """The scores of the tokens of one hand; those of the same sign as in the last frame are kept."""
         before, scores = self._last[hand]
         if sign is before:
             return scores
@@ -87,28 +98,27 @@ class SignScores:
         elif sign.token is not None:
             scores = self._of_token(sign.token, sign.confidence)
         else:
-            scores = np.full(len(self._tokens), math.log(GAP))
+            scores = [math.log(GAP)] * len(self._tokens)
         self._last[hand] = sign, scores
         return scores
 
-    def _of_probabilities(self, probabilities: Mapping[str, float]) -> Scores:
+    def _of_probabilities(self, probabilities: Mapping[str, float]) -> list[float]:
         """What is no number, or missing, counts as LEAST; more than one in all is brought down to one."""
-        chances = np.array([probabilities.get(token, 0.0) for token in self._tokens], np.float64)
-        np.fmax(np.fmin(chances, 1.0), LEAST, out=chances)
-        total = float(chances.sum())
-        if total > 1.0 + LEAST * len(self._tokens):
-            np.fmax(chances / total, LEAST, out=chances)
-        return np.log(chances)
+        chances = [probabilities.get(token, 0.0) for token in self._tokens]
+        total = sum(chances)
+        if total > 1.0 + SLACK:
+            finite = [chance if 0.0 < chance < math.inf else 0.0 for chance in chances]
+            chances = [chance / sum(finite) for chance in finite] if any(finite) else finite
+        return [_score(chance) for chance in chances]
 
-    def _of_token(self, token: str, confidence: float) -> Scores:
+    def _of_token(self, token: str, confidence: float) -> list[float]:
         """One token and how sure it is; the others share the rest."""
-        chance = _bounded(confidence)
-        others = max(1, len(self._tokens) - 1)
-        scores = np.full(len(self._tokens), math.log(_bounded((1.0 - chance) / others)))
-        if token in self._places:
-            scores[self._places[token]] = math.log(chance)
-        return scores
+        chance = confidence if confidence > LEAST else LEAST
+        others = _score((1.0 - chance) / max(1, len(self._tokens) - 1))
+        return [_score(chance) if name == token else others for name in self._tokens]
 
 
-def _bounded(chance: float) -> float:
-    return min(1.0, chance) if chance > LEAST else LEAST  # what is no number is not above it
+def _score(chance: float) -> float:
+    if chance > LEAST:  # what is no number is not
+        return math.log(chance) if chance < 1.0 else 0.0
+    return _LEAST_SCORE

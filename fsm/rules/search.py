@@ -8,17 +8,20 @@ of any signs in any order, words or not; how far a reading stays behind it tells
 (utterance verification, as Rose and Paul, ICASSP 1990).
 """
 
+import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.language.forms import is_digit, spell
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.rules.scores import GAP_SCORE, RATE, SignScores
+from lightgesture.fsm.signs import Signs
 
 COST: Final = 0.5
 """What every word costs, in units of score: against readings that change their mind for a moment."""
@@ -28,6 +31,10 @@ SHORT_COST: Final = 1.5
 
 SHORT_S: Final = 0.25
 """Seconds beyond the least length after which it is all given back."""
+
+JOIN_COST: Final = 3.0
+"""What a digit costs besides that follows another one without the joining word: hands that leave a number pass through
+others. Nothing where the language has no joining word."""
 
 RELEASE_S: Final = 0.1
 """Seconds that a sign must be gone before it is the next word again."""
@@ -60,8 +67,8 @@ Floats = NDArray[np.float64]
 class Spoken:
     """A word of a reading: when its sign began, and how well it was seen.
 
-    sure: greatest geometric mean of its probabilities of one hand over the least length, 0 to 1; of the last word,
-    which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began.
+    sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1; of
+    the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began.
     """
 
     word: str
@@ -86,19 +93,17 @@ class Reading:
     began: float
     touched: float
     text: int
+    words: tuple[str, ...]
     asked: frozenset[str] = frozenset()
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        return tuple(spoken.word for spoken in self.spoken)
 
 
 class Search:
     """The readings of one stream, by slot; what changes in every frame lies in arrays over the slots.
 
-    held, gap: the score of a reading in its last sign, and in the gap after it. sure: summed scores of the best window of
-    that sign. bridged: seconds with both hands in view since the sign was last the better of the two; longest: the most
-    of it so far. credit: what of SHORT_COST is still to be given back.
+    held, gap: the score of a reading in its last sign, and in the gap after it. sure: the less sure hand's summed scores
+    over the best window of that sign. bridged: seconds with both hands in view since the sign was last the better of the two; longest: the most
+    of it so far. credit: what of SHORT_COST is still to be given back. is_wary: whether signs that mean something else
+    inside a sentence may open none.
     """
 
     def __init__(self, grammar: Grammar, hold_s: float) -> None:
@@ -107,6 +112,7 @@ class Search:
         self.hold_s = hold_s
         self.scores = SignScores(grammar)
         self._span = hold_s * RATE
+        self._least = 2 * self._span * math.log(LIKELY)
         self._spacing = max(SPACING_S, (hold_s + RELEASE_S) * 1.5 / ROWS)
         self._idle = self._columns(grammar.idle_words, set(grammar.table.transitions[0]))
         inside = {word for row in grammar.table.transitions[1:] for word in row}
@@ -132,13 +138,15 @@ class Search:
         self._base = self._earlier = -1
         self._times = [0.0] * ROWS
         self._stamps = [(0, 0.0)] * ROWS
-        self._row = np.zeros((ROWS, size))
-        self._sum, self._gap_sum = np.zeros(size), 0.0
+        self._row, self._left_row = np.zeros((ROWS, size)), np.zeros((ROWS, size))
+        self._sum, self._left_sum, self._gap_sum = np.zeros(size), np.zeros(size), 0.0
         self._gap_row, self._top_row, self._free_row = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
         self._top_sum = 0.0
         self._free_signs, self._free_gap = np.full(size, NEVER), 0.0
         self.free = 0.0
+        self.is_wary = False
         self.window: Floats | None = None
+        self.weaker = np.full(size, NEVER)
         self._best_row, self._longest_row = np.full((ROWS, MOST), NEVER), np.zeros((ROWS, MOST))
         self.clear()
 
@@ -158,20 +166,27 @@ class Search:
 
     # One frame
 
-    def step(self, scores: Floats, passed_s: float, in_view_s: float, frame: int, time_s: float) -> None:
-        """Take in a frame's scores, which stand for `passed_s` seconds; in_view_s: of them, those with hands in view."""
+    def step(self, signs: Signs, passed_s: float, in_view_s: float, frame: int, time_s: float) -> Floats:
+        """Take in a frame, which stands for `passed_s` seconds; its scores. in_view_s: of them, those that count as passed
+        over where nothing is read."""
+        scores, of_left = self.scores.of(signs)
         self.now += passed_s
         weight = passed_s * RATE
         add, gap_add = scores * weight, GAP_SCORE * weight
-        self._sum = self._sum + add
+        self._sum += add
+        self._left_sum += of_left * weight
         self._gap_sum += gap_add
         self._top_sum += max(float(add.max()), gap_add)
         row = self._next_row(frame, time_s)
-        self._row[row] = self._sum
+        self._row[row], self._left_row[row] = self._sum, self._left_sum
         self._gap_row[row], self._top_row[row] = self._gap_sum, self._top_sum
         self._base = self._follow(self._base, self.now - self.hold_s)
         self._earlier = self._follow(self._earlier, self.now - self.hold_s - RELEASE_S)
-        self.window = None if self._base < 0 else self._sum - self._row[self._base % ROWS]
+        if self._base >= 0:
+            base = self._base % ROWS
+            self.window = self._sum - self._row[base]
+            of_left = self._left_sum - self._left_row[base]
+            self.weaker = np.minimum(of_left, self.window - of_left)
         self._step_free(add, gap_add)
         self._free_row[row] = self.free
         if self._slots:
@@ -181,6 +196,7 @@ class Search:
             self._extend(self.window)
         if self._slots:
             self._prune()
+        return scores
 
     def _next_row(self, frame: int, time_s: float) -> int:
         """The row of this frame: a new one, or the last again where they come too fast."""
@@ -216,7 +232,7 @@ class Search:
         self.held += back
         is_held = self.held >= self.gap
         if self.window is not None:
-            np.maximum(self.sure, self.window[column], out=self.sure, where=is_held)
+            np.maximum(self.sure, self.weaker[column], out=self.sure, where=is_held)
         self.bridged += in_view_s
         self.bridged[is_held] = 0.0
         np.maximum(self.longest, self.bridged, out=self.longest)
@@ -226,31 +242,35 @@ class Search:
 
     def _extend(self, window: Floats) -> None:
         """Signs that were likely for the least length become words of the readings that they fit."""
-        least = 2 * self._span * float(np.log(LIKELY))
         base = self._base % ROWS
         if self._times[base] >= self._cleared:
-            likely = self._idle_columns[window[self._idle_columns] > least]
-            for column in likely.tolist():
-                score = self._free_row[base] + window[column] - COST - SHORT_COST
-                for word in self._idle[column]:
-                    self._open(column, word, float(score), base)
+            gains = window[self._idle_columns]
+            for place in np.flatnonzero(gains > self._least).tolist():
+                column = int(self._idle_columns[place])
+                if self.is_wary and column in self._inside:
+                    continue
+                score = self._free_row[base] + gains[place] - COST - SHORT_COST
+                self._open(column, float(score), base)
         if not self._slots:
-            return
-        likely = self._inside_columns[window[self._inside_columns] > least]
-        if not len(likely):
             return
         entered = self._best_row[base] - (COST + SHORT_COST)
         floor = self.free - BEAM
-        for column in likely.tolist():
-            gain = window[column]
-            for slot in np.flatnonzero(entered + gain > floor).tolist():
-                reading = self.readings[slot]
-                if reading is None:
-                    continue
-                if self._column[slot] != column:
-                    self._continue(slot, reading, column, float(entered[slot] + gain), base)
-                elif (score := self._again(slot, column)) is not None:
-                    self._continue(slot, reading, column, score + float(gain), self._earlier % ROWS)
+        gains = window[self._inside_columns]
+        likely = np.flatnonzero(gains > max(self._least, floor - float(entered.max())))
+        if not len(likely):
+            return
+        scores = gains[likely, None] + entered
+        for place, slot in np.argwhere(scores > floor).tolist():
+            reading = self.readings[slot]
+            if reading is None:
+                continue
+            column = int(self._inside_columns[likely[place]])
+            if self._column[slot] != column:
+                self._continue(slot, reading, column, float(scores[place, slot]), base)
+            elif (score := self._again(slot, column)) is not None:
+                self._continue(
+                    slot, reading, column, score + float(gains[likely[place]]), self._earlier % ROWS
+                )
 
     def _again(self, slot: int, column: int) -> float | None:
         """The score with which a reading's last sign may come again; None where it was not released before."""
@@ -269,64 +289,65 @@ class Search:
         frame, time_s = self._stamps[(base + 1) % ROWS]
         return Spoken(word, column, frame, time_s, behind)
 
-    def _open(self, column: int, word: str, score: float, base: int) -> None:
+    def _open(self, column: int, score: float, base: int) -> None:
         """A word opens a sentence, whatever was shown before."""
+        word = self._idle[column][0]
+        if not self._is_better((word,), column, score):
+            return
         spoken = (self._spoken(word, column, base, 0.0),)
-        state = self._grammar.table.transitions[0].get(word)
-        if state is not None:
-            self._enter(spoken, state, 0, self._times[base], score, 0.0, column)
+        state = self._grammar.table.transitions[0][word]
+        text = self._text_number((word,))
+        self._enter(Reading(spoken, state, 0, self._times[base], self.now, text, (word,)), score, 0.0)
 
     def _continue(self, slot: int, reading: Reading, column: int, score: float, base: int) -> None:
         """A word goes on with a reading, where the table has it, or replaces the last one that was asked for again."""
-        if score <= self.free - BEAM:
-            return
+        transitions = self._grammar.table.transitions
         for word in self._inside[column]:
+            is_again = word in reading.asked
+            before = reading.before if is_again else reading.state
+            target = transitions[before].get(word)
+            if target is None or (not is_again and len(reading.words) >= self._grammar.limits.max_words):
+                continue
+            if self._join is not None and is_digit(word) and is_digit(reading.words[-1]) and not is_again:
+                score -= JOIN_COST
+            words = (*(reading.words[:-1] if is_again else reading.words), word)
+            if not self._is_better(words, column, score):
+                continue
             behind = float(self._free_row[base] - self._best_row[base, slot])
-            spoken = self._spoken(word, column, base, behind)
             last = reading.spoken[-1]
-            if word in reading.asked:
-                target = self._grammar.table.transitions[reading.before][word]
-                earlier, before = reading.spoken[:-1], reading.before
-            else:
-                following = self._grammar.table.transitions[reading.state].get(word)
-                if following is None or len(reading.spoken) >= self._grammar.limits.max_words:
-                    continue
-                sure = self.certainty(slot)
-                kept = Spoken(last.word, last.column, last.frame, last.time_s, last.behind, sure)
-                target, earlier, before = following, (*reading.spoken[:-1], kept), reading.state
+            kept = replace(last, sure=self.certainty(slot))
+            earlier = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
+            spoken = (*earlier, self._spoken(word, column, base, behind))
+            text = self._text_number(words)
             longest = float(self._longest_row[base, slot])
-            self._enter((*earlier, spoken), target, before, reading.began, score, longest, column)
+            self._enter(Reading(spoken, target, before, reading.began, self.now, text, words), score, longest)
 
-    def _enter(
-        self,
-        spoken: tuple[Spoken, ...],
-        state: int,
-        before: int,
-        began: float,
-        score: float,
-        longest: float,
-        column: int,
-    ) -> None:
-        """Keep a reading with a new word, unless the same one is already there with a better score."""
-        words = tuple(item.word for item in spoken)
-        key = words, column
+    def _is_better(self, words: tuple[str, ...], column: int, score: float) -> bool:
+        """Whether a reading with this score is worth keeping: it may already be there, with a better one."""
+        slot = self._slots.get((words, column))
+        return score > self.free - BEAM if slot is None else score > self.best[slot]
+
+    def _text_number(self, words: tuple[str, ...]) -> int:
+        """The number of what these words say, digits joined."""
+        return self._texts.setdefault(spell(words, self._join), len(self._texts))
+
+    def _enter(self, reading: Reading, score: float, longest: float) -> None:
+        """Keep a reading whose last word begins to count now. longest: seconds that it has passed over so far."""
+        column = reading.spoken[-1].column
+        key = reading.words, column
         slot = self._slots.get(key)
-        if slot is not None:
-            if score <= self.best[slot]:
-                return
-        else:
+        if slot is None:
             slot = self._free_slot(score)
             if slot is None:
                 return
             self._slots[key] = slot
             self.gap[slot] = NEVER
             self._best_row[:, slot] = NEVER
-        text = self._texts.setdefault(spell(words, self._join), len(self._texts))
-        self.readings[slot] = Reading(spoken, state, before, began, self.now, text)
-        self._text[slot], self._column[slot] = text, column
+        self.readings[slot] = reading
+        self._text[slot], self._column[slot] = reading.text, column
         self.held[slot] = self.best[slot] = score
         self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, longest
-        self.sure[slot] = NEVER if self.window is None else self.window[column]
+        self.sure[slot] = self.weaker[column]
 
     def _free_slot(self, score: float) -> int | None:
         """A slot for a new reading, at need that of the worst one; None where all are better."""
@@ -356,7 +377,7 @@ class Search:
 
     def certainty(self, slot: int) -> float:
         """How well the last sign of a reading was seen: `Spoken.sure` of its last word."""
-        return float(np.exp(self.sure[slot] / (2 * self._span)))
+        return math.exp(self.sure[slot] / self._span)
 
     def certainties(self, slot: int) -> list[float]:
         """The same of all its words."""
@@ -374,7 +395,7 @@ class Search:
         if reading is None:
             return 0.0, 0
         marks = [*(item.behind for item in reading.spoken), self.behind(slot)]
-        steps = [after - before for before, after in zip(marks, marks[1:], strict=False)]
+        steps = [after - before for before, after in pairwise(marks)]
         worst = max(range(len(steps)), key=steps.__getitem__)
         return steps[worst], worst
 
@@ -385,7 +406,7 @@ class Search:
 
     def likelihood(self, column: int) -> float:
         """Geometric mean probability of a sign over the window, 0 to 1."""
-        return 0.0 if self.window is None else float(np.exp(self.window[column] / (2 * self._span)))
+        return math.exp(self.weaker[column] / self._span)
 
     def is_over(self, slot: int) -> bool:
         """Whether the last sign of a reading has gone."""

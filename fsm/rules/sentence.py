@@ -10,6 +10,7 @@ issued as soon as its end word was shown for the least length, if all of these h
 - no part of it is explained much better by signs that make no sentence ("does_not_fit").
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
@@ -41,6 +42,9 @@ LONGEST_STEP_S: Final = 0.15
 
 PATIENCE_S: Final = 0.6
 """How long a complete sentence in doubt may stand after its end word before it is rejected, seconds."""
+
+PAUSE_S: Final = 1.5
+"""Seconds without a sign after which a sentence that was dropped on the way is over for the diver too."""
 
 STEADY: Final = 0.5
 """Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second GO."""
@@ -74,8 +78,9 @@ class SentenceRule:
         """As at the start of a stream."""
         self._told: tuple[str, ...] = ()
         self._told_s = 0.0
+        self._is_told_sure = False
         self._spent: int | None = None
-        self._absent_s = self._steady_from = 0.0
+        self._absent_s = self._steady_from = self._paused_s = 0.0
         self._top, self._top_s = -1, 0.0
 
     def finish(self) -> None:
@@ -94,10 +99,10 @@ class SentenceRule:
             self._close()
         in_view = signs.left.seen and signs.right.seen
         is_counted = in_view or signs.left.is_word or signs.right.is_word or self._grammar.dwell.count_hidden
-        scores = search.scores.of(signs)
         step_s = min(passed_s, LONGEST_STEP_S)
-        search.step(scores, step_s, passed_s if is_counted else 0.0, self._reporter.frame, now_s)
+        scores = search.step(signs, step_s, passed_s if is_counted else 0.0, self._reporter.frame, now_s)
         self._follow_top(scores, step_s)
+        self._wait_for_pause(scores, passed_s)
         if not self._heed_steady_sign(scores, step_s):
             self._heed_readings(now_s)
         is_growing = self._top >= 0 and self._top_s > 0.0
@@ -112,6 +117,12 @@ class SentenceRule:
         self._told = ()
         if self.search.window is not None:
             self._spend(int(self.search.window.argmax()))
+
+    def _wait_for_pause(self, scores: Floats, passed_s: float) -> None:
+        """A diver who does not look signs on after a rejection: what follows is no new sentence before a pause."""
+        if self.search.is_wary:
+            self._paused_s = 0.0 if scores[self._top] > 2 * math.log(STEADY) else self._paused_s + passed_s
+            self.search.is_wary = self._paused_s < PAUSE_S
 
     # Signs that count by themselves
 
@@ -155,6 +166,8 @@ class SentenceRule:
         if not is_idle or word is None or word in self._grammar.table.transitions[0]:
             return False
         self._spend(column)
+        if word == self._grammar.end:
+            self.search.is_wary = False
         self._reader.read(self.search.hold(column, self.search.likelihood(column)))
         return True
 
@@ -202,8 +215,8 @@ class SentenceRule:
         for place in range(kept, len(agreed)):
             text = spell(agreed[: place + 1], self._grammar.vocabulary.join)
             self._reporter.word(self._hold(reading, place, certainties[place]), agreed[place], text)
-        self._told = agreed
-        self._told_s = self.search.now
+        self._told, self._told_s = agreed, self.search.now
+        self._is_told_sure = certainties[0] > STEADY or len(agreed) > 1
         self._show()
 
     def _open(
@@ -270,7 +283,7 @@ class SentenceRule:
     def _doubt(self, lead: int, reading: Reading) -> Doubt | None:
         """Why a complete reading may not be issued; None: it may."""
         search, caution = self.search, self._caution
-        if self._told and reading.began > self._told_s and len(self._told) > 1:
+        if self._told and self._is_told_sure and reading.began > self._told_s:
             told = spell(self._told, self._grammar.vocabulary.join)
             return Doubt(reason="out_of_order", detail=f"a new sentence began inside {told}")
         if search.margin(lead) < MARGIN * caution:
@@ -302,6 +315,7 @@ class SentenceRule:
         if words:
             text = spell(words, self._grammar.vocabulary.join)
             self._reader.drop(doubt.reason, doubt.detail, text)
+            self.search.is_wary, self._paused_s = words[-1] != self._grammar.end, 0.0
         self._close()
 
     # Displays

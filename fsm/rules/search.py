@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,11 +36,11 @@ JOIN_COST: Final = 3.0
 """What a digit costs besides that follows another one without the joining word: hands that leave a number pass through
 others. Nothing where the language has no joining word."""
 
-RELEASE_S: Final = 0.1
-"""Seconds that a sign must be gone before it is the next word again."""
+PASSAGE_S: Final = 0.1
+"""Least seconds of the passage from one sign to the next: a sign that changes its mind for a moment is no second word."""
 
 RELEASE_SCORE: Final = 1.0
-"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average while it is gone."""
+"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average in the passage if it comes again."""
 
 BEAM: Final = 12.0
 """How far behind the free loop a reading may be before it is given up, in units of score."""
@@ -113,7 +113,7 @@ class Search:
         self.scores = SignScores(grammar)
         self._span = hold_s * RATE
         self._least = 2 * self._span * math.log(LIKELY)
-        self._spacing = max(SPACING_S, (hold_s + RELEASE_S) * 1.5 / ROWS)
+        self._spacing = max(SPACING_S, (hold_s + PASSAGE_S) * 1.5 / ROWS)
         self._idle = self._columns(grammar.idle_words, set(grammar.table.transitions[0]))
         inside = {word for row in grammar.table.transitions[1:] for word in row}
         self._inside = self._columns({**grammar.sentence_words}, inside)
@@ -181,7 +181,7 @@ class Search:
         self._row[row], self._left_row[row] = self._sum, self._left_sum
         self._gap_row[row], self._top_row[row] = self._gap_sum, self._top_sum
         self._base = self._follow(self._base, self.now - self.hold_s)
-        self._earlier = self._follow(self._earlier, self.now - self.hold_s - RELEASE_S)
+        self._earlier = self._follow(self._earlier, self.now - self.hold_s - PASSAGE_S)
         if self._base >= 0:
             base = self._base % ROWS
             self.window = self._sum - self._row[base]
@@ -217,9 +217,14 @@ class Search:
         self._free_gap = max(self._free_gap, float(self._free_signs.max())) + gap_add
         self._free_signs += add
         if self.window is not None:
-            entered = self.window + (self._free_row[self._base % ROWS] - COST)
+            entered = self.window + (self._passed(self._free_row) - COST)
             np.maximum(self._free_signs, entered, out=self._free_signs)
         self.free = max(self._free_gap, float(self._free_signs.max()))
+
+    def _passed(self, scores: Floats) -> Any:
+        """From their rows, the scores after a passage that ends where the window begins."""
+        base, earlier = self._base % ROWS, max(self._earlier, 0) % ROWS
+        return scores[earlier] + (self._gap_row[base] - self._gap_row[earlier])
 
     def _step_readings(self, add: Floats, gap_add: float, passed_s: float, in_view_s: float) -> None:
         """Every reading goes on: in its sign, or in the gap."""
@@ -247,13 +252,12 @@ class Search:
             gains = window[self._idle_columns]
             for place in np.flatnonzero(gains > self._least).tolist():
                 column = int(self._idle_columns[place])
-                if self.is_wary and column in self._inside:
-                    continue
-                score = self._free_row[base] + gains[place] - COST - SHORT_COST
-                self._open(column, float(score), base)
-        if not self._slots:
+                if not (self.is_wary and column in self._inside):
+                    score = self._passed(self._free_row) + gains[place] - COST - SHORT_COST
+                    self._open(column, float(score), base)
+        if not self._slots or self._earlier < 0:
             return
-        entered = self._best_row[base] - (COST + SHORT_COST)
+        entered = self._passed(self._best_row) - (COST + SHORT_COST)
         floor = self.free - BEAM
         gains = window[self._inside_columns]
         likely = np.flatnonzero(gains > max(self._least, floor - float(entered.max())))
@@ -262,27 +266,16 @@ class Search:
         scores = gains[likely, None] + entered
         for place, slot in np.argwhere(scores > floor).tolist():
             reading = self.readings[slot]
-            if reading is None:
-                continue
             column = int(self._inside_columns[likely[place]])
-            if self._column[slot] != column:
-                self._continue(slot, reading, column, float(scores[place, slot]), base)
-            elif (score := self._again(slot, column)) is not None:
-                self._continue(
-                    slot, reading, column, score + float(gains[likely[place]]), self._earlier % ROWS
-                )
+            if reading is not None and (self._column[slot] != column or self._is_released(column)):
+                self._continue(slot, reading, column, float(scores[place, slot]))
 
-    def _again(self, slot: int, column: int) -> float | None:
-        """The score with which a reading's last sign may come again; None where it was not released before."""
-        if self._earlier < 0:
-            return None
+    def _is_released(self, column: int) -> bool:
+        """Whether a sign was gone in the passage before the window, so that it may be the next one again."""
         base, earlier = self._base % ROWS, self._earlier % ROWS
         of_sign = self._row[base, column] - self._row[earlier, column]
         of_top = self._top_row[base] - self._top_row[earlier]
-        if of_top - of_sign < RELEASE_SCORE * RATE * RELEASE_S:
-            return None
-        of_gap = self._gap_row[base] - self._gap_row[earlier]
-        return float(self._best_row[earlier, slot] + of_gap - COST - SHORT_COST)
+        return bool(of_top - of_sign >= RELEASE_SCORE * RATE * PASSAGE_S)
 
     def _spoken(self, word: str, column: int, base: int, behind: float) -> Spoken:
         """A word whose sign begins after the row `base`."""
@@ -299,7 +292,7 @@ class Search:
         text = self._text_number((word,))
         self._enter(Reading(spoken, state, 0, self._times[base], self.now, text, (word,)), score, 0.0)
 
-    def _continue(self, slot: int, reading: Reading, column: int, score: float, base: int) -> None:
+    def _continue(self, slot: int, reading: Reading, column: int, score: float) -> None:
         """A word goes on with a reading, where the table has it, or replaces the last one that was asked for again."""
         transitions = self._grammar.table.transitions
         for word in self._inside[column]:
@@ -313,13 +306,14 @@ class Search:
             words = (*(reading.words[:-1] if is_again else reading.words), word)
             if not self._is_better(words, column, score):
                 continue
-            behind = float(self._free_row[base] - self._best_row[base, slot])
+            earlier = self._earlier % ROWS
+            behind = float(self._free_row[earlier] - self._best_row[earlier, slot])
             last = reading.spoken[-1]
             kept = replace(last, sure=self.certainty(slot))
-            earlier = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
-            spoken = (*earlier, self._spoken(word, column, base, behind))
+            before_it = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
+            spoken = (*before_it, self._spoken(word, column, self._base % ROWS, behind))
             text = self._text_number(words)
-            longest = float(self._longest_row[base, slot])
+            longest = float(self._longest_row[earlier, slot])
             self._enter(Reading(spoken, target, before, reading.began, self.now, text, words), score, longest)
 
     def _is_better(self, words: tuple[str, ...], column: int, score: float) -> bool:

@@ -21,7 +21,7 @@ from lightgesture.fsm.language.settings import SentenceSettings
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
 from lightgesture.fsm.rules.dwell import Hold
-from lightgesture.fsm.rules.search import RELEASE_S, RELEASE_SCORE, Floats, Reading, Search
+from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search
 from lightgesture.fsm.sentence import Sentence
 from lightgesture.fsm.signs import Signs
 
@@ -137,7 +137,7 @@ class SentenceRule:
         if self._spent is not None:
             is_there = scores[self._spent] > scores.max() - RELEASE_SCORE
             self._absent_s = 0.0 if is_there else self._absent_s + step_s
-            if self._absent_s >= RELEASE_S:
+            if self._absent_s >= PASSAGE_S:
                 self._spent = None
         if search.window is None or search.window_s < self._steady_from:
             return False
@@ -206,6 +206,10 @@ class SentenceRule:
         if reading.state in self._grammar.table.accepting:
             agreed = agreed[: len(words) - 1]  # the end word comes with the verdict
         kept = _common(agreed, self._told)
+        if agreed and self._is_another(reading):
+            if len(self._told) == 1:
+                self._reject(self._inside(agreed[0]))
+            return
         if len(agreed) <= kept or (kept == 0 and len(self._told) > 1):
             return
         certainties = self.search.certainties(lead)
@@ -283,9 +287,8 @@ class SentenceRule:
     def _doubt(self, lead: int, reading: Reading) -> Doubt | None:
         """Why a complete reading may not be issued; None: it may."""
         search, caution = self.search, self._caution
-        if self._told and self._is_told_sure and reading.began > self._told_s:
-            told = spell(self._told, self._grammar.vocabulary.join)
-            return Doubt(reason="out_of_order", detail=f"a new sentence began inside {told}")
+        if self._is_another(reading):
+            return self._inside(reading.words[0])
         if search.margin(lead) < MARGIN * caution:
             rival = search.rival(lead)
             return Doubt(reason="ambiguous", detail=f"it could as well be {rival}; sign it again")
@@ -303,6 +306,17 @@ class SentenceRule:
             detail = f"{reading.words[place]} is not what was shown; sign it again"
             return Doubt(reason="does_not_fit", detail=detail)
         return None
+
+    def _is_another(self, reading: Reading) -> bool:
+        """Whether a reading is of a sentence that began after the one that was told, which is not over."""
+        return bool(self._told) and self._is_told_sure and reading.began > self._told_s
+
+    def _inside(self, word: str) -> Doubt:
+        """A start word came in mid-sentence."""
+        told = spell(self._told, self._grammar.vocabulary.join)
+        return Doubt(
+            reason="out_of_order", detail=f"{word} cannot follow {told}; expected {self._reader.expected}"
+        )
 
     def _misfit(self) -> Doubt:
         """What was told does not go on as any sentence would."""

@@ -1,6 +1,7 @@
 """Signs, a pair a frame, become words, and words become instructions."""
 
-from typing import Protocol, Self
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol, Self
 
 from lightgesture.fsm.events import Event
 from lightgesture.fsm.language.grammar import Grammar
@@ -12,6 +13,9 @@ from lightgesture.fsm.rules.holds import HoldRule
 from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.signs import Signs
 
+if TYPE_CHECKING:
+    from lightgesture.fsm.rules.search import Summary
+
 
 class _Rule(Protocol):
     """When signs count: feeds the reader, and the reporter, with what it makes of the frames."""
@@ -22,6 +26,10 @@ class _Rule(Protocol):
 
     def finish(self) -> None:
         """The stream ends."""
+        ...
+
+    def readings(self) -> "Sequence[Summary]":
+        """Of the last sentence, the best first."""
         ...
 
 
@@ -111,6 +119,11 @@ class Decoder:
     def expected(self) -> str:
         """What may follow, for the diver: "GO or a digit"."""
         return self._reader.expected
+
+    @property
+    def readings(self) -> "Sequence[Summary]":
+        """By the rule "sentence" the best readings of the last sentence when it was judged; none by the others."""
+        return self._rule.readings()
 
     def for_stream(self, source: str | None) -> Self:
         """Another decoder of the same grammar and options, for another stream."""

@@ -55,6 +55,10 @@ class HoldRule:
         """The end of the stream: a sign half held comes to nothing."""
         self._dwell.reset()
 
+    def readings(self) -> tuple[()]:
+        """There is but one reading, the sentence itself."""
+        return ()
+
     def _miss(self) -> None:
         """Hands were seen for too long without a word: whatever follows, a word may be missing before it."""
         # What the sign means inside the sentence it may not mean outside.

@@ -97,6 +97,22 @@ class Reading:
     asked: frozenset[str] = frozenset()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary:
+    """What a reading said, for those who ask why.
+
+    words: each with how well its sign was seen. behind: how far it was behind the free loop, in units of score.
+    longest_s: seconds that it passed over with both hands in view. misfit: how far it fell behind within one word,
+    `misfit_at`.
+    """
+
+    words: tuple[tuple[str, float], ...]
+    behind: float
+    longest_s: float
+    misfit: float
+    misfit_at: str
+
+
 class Search:
     """The readings of one stream, by slot; what changes in every frame lies in arrays over the slots.
 
@@ -416,6 +432,24 @@ class Search:
             reading = self.readings[other]
             if reading is not None:
                 yield reading
+
+    def summaries(self, most: int) -> tuple[Summary, ...]:
+        """The best readings, the best first."""
+        found = []
+        for slot in np.argsort(-self.best)[:most].tolist():
+            reading = self.readings[slot]
+            if reading is not None:
+                misfit, place = self.misfit(slot)
+                found.append(
+                    Summary(
+                        words=tuple(zip(reading.words, self.certainties(slot), strict=True)),
+                        behind=self.behind(slot),
+                        longest_s=float(self.longest[slot]),
+                        misfit=misfit,
+                        misfit_at=reading.words[place],
+                    )
+                )
+        return tuple(found)
 
     def rival(self, slot: int) -> str:
         """The text of the best reading with another text than this one; empty where there is none."""

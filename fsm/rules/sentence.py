@@ -21,21 +21,21 @@ from lightgesture.fsm.language.settings import SentenceSettings
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
 from lightgesture.fsm.rules.dwell import Hold
-from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search
+from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search, Summary
 from lightgesture.fsm.sentence import Sentence
 from lightgesture.fsm.signs import Signs
 
-MARGIN: Final = 1.0
+MARGIN: Final = 2.5
 """How far the best rival text must be behind, in units of score, at caution 1."""
 
-WEAK: Final = 0.12
+WEAK: Final = 0.25
 """Least geometric mean probability of a hand over the best window of each word, 0 to 1, at caution 1."""
 
-MISFIT: Final = 3.0
+MISFIT: Final = 4.0
 """How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at caution 1."""
 
-PASSED_S: Final = 0.5
-"""Longest time between two signs with both hands in view, seconds."""
+PASSED_S: Final = 0.4
+"""Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
 
 LONGEST_STEP_S: Final = 0.15
 """For how long one frame may speak, seconds: of what was not looked at nothing is known."""
@@ -48,6 +48,9 @@ PAUSE_S: Final = 1.5
 
 STEADY: Final = 0.5
 """Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second GO."""
+
+SUMMARIES: Final = 5
+"""Readings of a sentence that are kept for those who ask why."""
 
 KILL: Final = 0.3
 """The same for the word to kill: to stop is better than to go on."""
@@ -77,6 +80,7 @@ class SentenceRule:
     def _reset(self) -> None:
         """As at the start of a stream."""
         self._told: tuple[str, ...] = ()
+        self._judged: tuple[Summary, ...] = ()
         self._told_s = 0.0
         self._is_told_sure = False
         self._spent: int | None = None
@@ -87,6 +91,10 @@ class SentenceRule:
         """The end of the stream."""
         self.search.reset()
         self._reset()
+
+    def readings(self) -> tuple[Summary, ...]:
+        """The best readings of the last sentence when it was judged."""
+        return self._judged
 
     # One frame
 
@@ -113,6 +121,7 @@ class SentenceRule:
 
     def _close(self) -> None:
         """The sentence is over; what is still shown is no part of the next one."""
+        self._judged = self.search.summaries(SUMMARIES)
         self.search.clear()
         self._told = ()
         if self.search.window is not None:
@@ -162,7 +171,8 @@ class SentenceRule:
 
     def _note(self, column: int, word: str | None) -> bool:
         """A word that opens no sentence while none is open: the diver is told so, once."""
-        is_idle = self._reader.sentence is None
+        lead = self.search.lead
+        is_idle = self._reader.sentence is None and (lead is None or self.search.behind(lead) > MISFIT)
         if not is_idle or word is None or word in self._grammar.table.transitions[0]:
             return False
         self._spend(column)
@@ -198,7 +208,10 @@ class SentenceRule:
     def _tell(self, lead: int, reading: Reading, now_s: float) -> None:
         """Words on which all near readings agree are told, once each."""
         words = reading.words
-        if words == self._told or self.search.behind(lead) > MISFIT / self._caution:
+        if words == self._told:
+            self._is_told_sure = self._is_told_sure or self.search.certainty(lead) > STEADY
+            return
+        if self.search.behind(lead) > MISFIT / self._caution:
             return
         agreed = words
         for other in self.search.near(lead, MARGIN):
@@ -298,7 +311,7 @@ class SentenceRule:
             return Doubt(
                 reason="weak_sign", detail=f"{reading.words[weakest]} was not seen well; sign it again"
             )
-        if search.longest[lead] > PASSED_S:
+        if search.longest[lead] > PASSED_S / caution:
             detail = f"{search.longest[lead]:.1f} s between two signs were not read; sign it again"
             return Doubt(reason="passed_over", detail=detail)
         behind, place = search.misfit(lead)

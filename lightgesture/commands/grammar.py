@@ -1,13 +1,14 @@
-"""`lightgesture grammar`: checks a grammar file, shows its table, draws its states, explains a sequence of pairs."""
+"""`lightgesture grammar`: starts, checks, shows and draws a grammar file, and explains pairs or a recording."""
 
 import argparse
 
-CHECK, SHOW, DRAW, EXPLAIN = "check", "show", "draw", "explain"
+INIT, CHECK, SHOW, DRAW, EXPLAIN = "init", "check", "show", "draw", "explain"
 ACTIONS = {
+    INIT: "write the bundled grammar to edit",
     CHECK: "name all that is wrong with the file; 2 where there is anything",
     SHOW: "print its signs, its table and its settings",
     DRAW: "write its state graph as SVG or PNG",
-    EXPLAIN: "walk through a sequence of pairs step by step",
+    EXPLAIN: "walk through a sequence of pairs, or through a recording, step by step",
 }
 DEFAULT_OUT = "grammar.svg"
 
@@ -19,11 +20,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action = actions.add_parser(
             name, help=text, description=f"grammar {name}: {text}", allow_abbrev=False
         )
+        if name == INIT:
+            action.add_argument(
+                "file", metavar="FILE", help="file to write; what is there is never overwritten"
+            )
+            continue
         if name == EXPLAIN:
             action.add_argument(
                 "sequence",
-                metavar="PAIRS",
-                help='pairs, the diver\'s left hand first, such as "ok,0 5,5 ok,ok"; each is held once and released',
+                metavar="PAIRS|RECORDS.jsonl",
+                help='pairs, the diver\'s left hand first, such as "ok,0 5,5 ok,ok"; each is held once and released. Or'
+                " what `decode --rule sentence --frames --json` recorded: the readings of each sentence",
             )
         action.add_argument("file", nargs="?", metavar="FILE", help="grammar file (default: the bundled one)")
         action.add_argument("--grammar", metavar="FILE", help="the same, as the decoding commands have it")
@@ -41,8 +48,11 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.console import print_line
     from lightgesture.errors import ExitStatus, UsageError
     from lightgesture.fsm import GrammarError, load_grammar
-    from lightgesture.grammar.report import check, explain, show
+    from lightgesture.grammar.report import check, explain, init, show
 
+    if args.action == INIT:
+        print_line(init(args.file))
+        return ExitStatus.OK
     if args.file is not None and args.grammar is not None:
         raise UsageError(f"{args.file}, {args.grammar}: two grammars; name one")
     path = args.grammar if args.file is None else args.file
@@ -54,7 +64,12 @@ def run(args: argparse.Namespace) -> int:
             if args.action == SHOW:
                 lines = show(grammar)
             elif args.action == EXPLAIN:
-                lines = explain(grammar, args.sequence)
+                if args.sequence.endswith(".jsonl"):
+                    from lightgesture.grammar.replay import explain_records
+
+                    lines = explain_records(grammar, args.sequence)
+                else:
+                    lines = explain(grammar, args.sequence)
             else:
                 from lightgesture.grammar.drawing import draw
 

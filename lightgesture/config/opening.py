@@ -15,22 +15,25 @@ from lightgesture.results import DebugPictures
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:
     """The pipeline for one input, `source` being its name in the records.
 
-    UsageError: the model, the selector's data, the colour profile or the grammar is wrong.
+    UsageError: the model, the selector's data, the colour profile or the grammar is wrong, or options exclude each other.
     """
     try:
         return Pipeline(
             model=settings.model,
             selector=settings.selector,
             profile=settings.profile,
+            threshold=settings.threshold,
+            rule=settings.rule,
             hold=settings.hold,
             hold_seconds=settings.hold_seconds,
+            caution=settings.caution,
             grammar=settings.grammar,
             mirrored=settings.mirrored,
             source=source,
             frames=settings.frames,
             debug=debug,
         )
-    except (ModelError, SelectorError, ProfileError, GrammarError) as error:
+    except (ModelError, SelectorError, ProfileError, GrammarError, ValueError) as error:
         raise UsageError(str(error)) from error
 
 

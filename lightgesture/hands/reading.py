@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,10 @@ from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
 from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
 
+Extents = Literal["clearest", "mean"]
+"""What stands for a hand that may have several extents: the one in which some token is likeliest, which is the sharpest
+and can be sharply wrong where a box cuts off a finger, or the mean of all of them, which is in doubt where they differ."""
+
 
 @dataclass(frozen=True, slots=True)
 class ReadingSettings:
@@ -19,6 +23,7 @@ class ReadingSettings:
 
     token_probability: least calibrated probability of the best token, 0 to 1. Higher refuses more and reads fewer
         wrong; what stays below is `low_confidence`.
+    extents: how the extents that a hand may have are read together, see `Extents`.
     edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
         classifier is not sure.
     covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
@@ -28,6 +33,7 @@ class ReadingSettings:
     """
 
     token_probability: float = 0.7
+    extents: Extents = "clearest"
     edge_share: float = 0.02
     covered_share: float = 0.25
     edge_factor: float = 0.72
@@ -167,10 +173,11 @@ class ReadingStage:
         memory: ReadingMemory,
         time_s: float,
     ) -> Hand:
-        """The hand in the extent in which it reads most clearly."""
+        """The hand with the box in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
-        steady = memory.steady(hand.number, rows[place], time_s)
+        row = rows[place] if self._settings.extents == "clearest" else rows.mean(axis=0)
+        steady = memory.steady(hand.number, row, time_s)
         box = boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
         token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)

@@ -31,6 +31,9 @@ MARGIN: Final = 2.5
 WEAK: Final = 0.25
 """Least geometric mean probability of a hand over the best window of each word, 0 to 1, at caution 1."""
 
+END: Final = 0.4
+"""The same of the end word, without which nothing is issued."""
+
 MISFIT: Final = 4.0
 """How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at caution 1."""
 
@@ -307,6 +310,8 @@ class SentenceRule:
             return Doubt(reason="ambiguous", detail=f"it could as well be {rival}; sign it again")
         certainties = search.certainties(lead)
         weakest = min(range(len(certainties)), key=certainties.__getitem__)
+        if certainties[-1] < min(END * caution, 1.0 - END):
+            return Doubt(reason="weak_sign", detail=f"{reading.words[-1]} was not seen well; sign it again")
         if certainties[weakest] < WEAK * caution:
             return Doubt(
                 reason="weak_sign", detail=f"{reading.words[weakest]} was not seen well; sign it again"

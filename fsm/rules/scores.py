@@ -23,6 +23,9 @@ LEAST: Final = 0.01
 HIDDEN: Final = 0.05
 """Probability of every token of a hand that is not in view, 0 to 1: between doubtful and wrong."""
 
+UNREAD: Final = 0.1
+"""The same of a hand that is in view and of which the reader told nothing."""
+
 GAP: Final = 0.2
 """Probability, of one hand, of whatever is shown between two signs, 0 to 1: a sign must be clearer than this."""
 
@@ -98,7 +101,7 @@ class SignScores:
         elif sign.token is not None:
             scores = self._of_token(sign.token, sign.confidence)
         else:
-            scores = [math.log(GAP)] * len(self._tokens)
+            scores = [math.log(UNREAD)] * len(self._tokens)
         self._last[hand] = sign, scores
         return scores
 

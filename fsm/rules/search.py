@@ -33,8 +33,8 @@ SHORT_S: Final = 0.25
 """Seconds beyond the least length after which it is all given back."""
 
 JOIN_COST: Final = 3.0
-"""What a digit costs besides that follows another one without the joining word: hands that leave a number pass through
-others. Nothing where the language has no joining word."""
+"""What a digit costs besides that follows another one without the joining word, once a sentence: hands that leave a digit
+pass through others. Nothing where the language has no joining word."""
 
 PASSAGE_S: Final = 0.1
 """Least seconds of the passage from one sign to the next: a sign that changes its mind for a moment is no second word."""
@@ -47,6 +47,9 @@ BEAM: Final = 12.0
 
 MOST: Final = 40
 """Readings that are kept, the best ones: bounds time and memory."""
+
+MOST_TEXTS: Final = 1000
+"""Texts of readings, those that were given up included, that are told apart by number."""
 
 LIKELY: Final = 0.04
 """Geometric mean probability of a sign over the least length, 0 to 1, below which no word begins with it."""
@@ -68,7 +71,8 @@ class Spoken:
     """A word of a reading: when its sign began, and how well it was seen.
 
     sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1; of
-    the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began.
+    the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began. fine: what the word cost
+    for its place alone.
     """
 
     word: str
@@ -76,6 +80,7 @@ class Spoken:
     frame: int
     time_s: float
     behind: float
+    fine: float
     sure: float = 0.0
 
 
@@ -119,7 +124,7 @@ class Search:
     held, gap: the score of a reading in its last sign, and in the gap after it. sure: the less sure hand's summed scores
     over the best window of that sign. bridged: seconds with both hands in view since the sign was last the better of the two; longest: the most
     of it so far. credit: what of SHORT_COST is still to be given back. is_wary: whether signs that mean something else
-    inside a sentence may open none.
+    inside a sentence may open none. spent: a sign that may not, because it is still held from what was read before.
     """
 
     def __init__(self, grammar: Grammar, hold_s: float) -> None:
@@ -152,6 +157,7 @@ class Search:
         self.now = 0.0
         self._count = 0
         self._base = self._earlier = -1
+        self._broken = 0
         self._times = [0.0] * ROWS
         self._stamps = [(0, 0.0)] * ROWS
         self._row, self._left_row = np.zeros((ROWS, size)), np.zeros((ROWS, size))
@@ -161,6 +167,7 @@ class Search:
         self._free_signs, self._free_gap = np.full(size, NEVER), 0.0
         self.free = 0.0
         self.is_wary = False
+        self.spent: int | None = None
         self.window: Floats | None = None
         self.weaker = np.full(size, NEVER)
         self._best_row, self._longest_row = np.full((ROWS, MOST), NEVER), np.zeros((ROWS, MOST))
@@ -198,7 +205,8 @@ class Search:
         self._gap_row[row], self._top_row[row] = self._gap_sum, self._top_sum
         self._base = self._follow(self._base, self.now - self.hold_s)
         self._earlier = self._follow(self._earlier, self.now - self.hold_s - PASSAGE_S)
-        if self._base >= 0:
+        self.window = None
+        if self._base >= self._broken:
             base = self._base % ROWS
             self.window = self._sum - self._row[base]
             of_left = self._left_sum - self._left_row[base]
@@ -214,9 +222,17 @@ class Search:
             self._prune()
         return scores
 
+    def break_off(self) -> None:
+        """Nothing was looked at for a while: no sign goes on across it, from the next frame on."""
+        self._base = self._earlier = self._count - 1
+        self._broken = self._count
+
     def _next_row(self, frame: int, time_s: float) -> int:
         """The row of this frame: a new one, or the last again where they come too fast."""
-        if self._count < 2 or self.now - self._times[(self._count - 2) % ROWS] >= self._spacing:
+        if (
+            self._count < self._broken + 2
+            or self.now - self._times[(self._count - 2) % ROWS] >= self._spacing
+        ):
             self._count += 1
         row = (self._count - 1) % ROWS
         self._times[row], self._stamps[row] = self.now, (frame, time_s)
@@ -239,7 +255,7 @@ class Search:
 
     def _passed(self, scores: Floats) -> Any:
         """From their rows, the scores after a passage that ends where the window begins."""
-        base, earlier = self._base % ROWS, max(self._earlier, 0) % ROWS
+        base, earlier = self._base % ROWS, max(self._earlier, self._broken) % ROWS
         return scores[earlier] + (self._gap_row[base] - self._gap_row[earlier])
 
     def _step_readings(self, add: Floats, gap_add: float, passed_s: float, in_view_s: float) -> None:
@@ -268,10 +284,10 @@ class Search:
             gains = window[self._idle_columns]
             for place in np.flatnonzero(gains > self._least).tolist():
                 column = int(self._idle_columns[place])
-                if not (self.is_wary and column in self._inside):
+                if column != self.spent and not (self.is_wary and column in self._inside):
                     score = self._passed(self._free_row) + gains[place] - COST - SHORT_COST
                     self._open(column, float(score), base)
-        if not self._slots or self._earlier < 0:
+        if not self._slots or self._earlier < self._broken:
             return
         entered = self._passed(self._best_row) - (COST + SHORT_COST)
         floor = self.free - BEAM
@@ -293,10 +309,10 @@ class Search:
         of_top = self._top_row[base] - self._top_row[earlier]
         return bool(of_top - of_sign >= RELEASE_SCORE * RATE * PASSAGE_S)
 
-    def _spoken(self, word: str, column: int, base: int, behind: float) -> Spoken:
+    def _spoken(self, word: str, column: int, base: int, behind: float, fine: float = 0.0) -> Spoken:
         """A word whose sign begins after the row `base`."""
         frame, time_s = self._stamps[(base + 1) % ROWS]
-        return Spoken(word, column, frame, time_s, behind)
+        return Spoken(word, column, frame, time_s, behind, fine)
 
     def _open(self, column: int, score: float, base: int) -> None:
         """A word opens a sentence, whatever was shown before."""
@@ -317,20 +333,35 @@ class Search:
             target = transitions[before].get(word)
             if target is None or (not is_again and len(reading.words) >= self._grammar.limits.max_words):
                 continue
-            if self._join is not None and is_digit(word) and is_digit(reading.words[-1]) and not is_again:
-                score -= JOIN_COST
+            fine = 0.0 if is_again else self._fine(reading, word)
             words = (*(reading.words[:-1] if is_again else reading.words), word)
-            if not self._is_better(words, column, score):
+            if not self._is_better(words, column, score - fine):
                 continue
             earlier = self._earlier % ROWS
             behind = float(self._free_row[earlier] - self._best_row[earlier, slot])
             last = reading.spoken[-1]
             kept = replace(last, sure=self.certainty(slot))
             before_it = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
-            spoken = (*before_it, self._spoken(word, column, self._base % ROWS, behind))
+            spoken = (*before_it, self._spoken(word, column, self._base % ROWS, behind, fine))
             text = self._text_number(words)
             longest = float(self._longest_row[earlier, slot])
-            self._enter(Reading(spoken, target, before, reading.began, self.now, text, words), score, longest)
+            asked = self._asked((words, column)) if not is_again else frozenset[str]()
+            new = Reading(spoken, target, before, reading.began, self.now, text, words, asked)
+            if is_again and (slot_again := self._slots.get((words, column))) is not None:
+                self._drop(slot_again)  # what led to the sign that is replaced must not lead anywhere else
+            self._enter(new, score - fine, longest)
+
+    def _fine(self, reading: Reading, word: str) -> float:
+        """What a word costs for its place alone."""
+        last = reading.words[-1]
+        is_joined = self._join is None or not (is_digit(word) and is_digit(last)) or word == last
+        return 0.0 if is_joined or any(item.fine for item in reading.spoken) else JOIN_COST
+
+    def _asked(self, key: tuple[tuple[str, ...], int]) -> frozenset[str]:
+        """What was asked for again in the reading that has this key, if there is one."""
+        slot = self._slots.get(key)
+        reading = None if slot is None else self.readings[slot]
+        return frozenset() if reading is None else reading.asked
 
     def _is_better(self, words: tuple[str, ...], column: int, score: float) -> bool:
         """Whether a reading with this score is worth keeping: it may already be there, with a better one."""
@@ -339,6 +370,12 @@ class Search:
 
     def _text_number(self, words: tuple[str, ...]) -> int:
         """The number of what these words say, digits joined."""
+        if len(self._texts) >= MOST_TEXTS:
+            self._texts.clear()
+            for slot, reading in enumerate(self.readings):
+                if reading is not None:
+                    text = spell(reading.words, self._join)
+                    self._text[slot] = reading.text = self._texts.setdefault(text, len(self._texts))
         return self._texts.setdefault(spell(words, self._join), len(self._texts))
 
     def _enter(self, reading: Reading, score: float, longest: float) -> None:
@@ -405,7 +442,10 @@ class Search:
         if reading is None:
             return 0.0, 0
         marks = [*(item.behind for item in reading.spoken), self.behind(slot)]
-        steps = [after - before for before, after in pairwise(marks)]
+        steps = [
+            after - before - item.fine
+            for (before, after), item in zip(pairwise(marks), reading.spoken, strict=True)
+        ]
         worst = max(range(len(steps)), key=steps.__getitem__)
         return steps[worst], worst
 

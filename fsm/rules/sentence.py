@@ -21,6 +21,7 @@ from lightgesture.fsm.language.settings import SentenceSettings
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
 from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.scores import GAP_SCORE
 from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search, Summary
 from lightgesture.fsm.sentence import Sentence
 from lightgesture.fsm.signs import Signs
@@ -40,8 +41,11 @@ MISFIT: Final = 4.0
 PASSED_S: Final = 0.4
 """Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
 
-LONGEST_STEP_S: Final = 0.15
-"""For how long one frame may speak, seconds: of what was not looked at nothing is known."""
+LONGEST_STEP_S: Final = 0.25
+"""Longest time between two frames, seconds: no sign goes on across more, for of what was not looked at nothing is known."""
+
+SETTLE_S: Final = 0.1
+"""How long an end word is looked at beyond its least length, seconds: the window over which it adds up is then its own."""
 
 PATIENCE_S: Final = 0.6
 """How long a complete sentence in doubt may stand after its end word before it is rejected, seconds."""
@@ -85,8 +89,7 @@ class SentenceRule:
         self._told: tuple[str, ...] = ()
         self._judged: tuple[Summary, ...] = ()
         self._told_s = 0.0
-        self._is_told_sure = False
-        self._spent: int | None = None
+        self._is_told_sure = self._is_waiting = False
         self._absent_s = self._steady_from = self._paused_s = 0.0
         self._top, self._top_s = -1, 0.0
 
@@ -110,7 +113,10 @@ class SentenceRule:
             self._close()
         in_view = signs.left.seen and signs.right.seen
         is_counted = in_view or signs.left.is_word or signs.right.is_word or self._grammar.dwell.count_hidden
-        step_s = min(passed_s, LONGEST_STEP_S)
+        step_s = passed_s
+        if passed_s > LONGEST_STEP_S:
+            search.break_off()
+            step_s = 0.0
         scores = search.step(signs, step_s, passed_s if is_counted else 0.0, self._reporter.frame, now_s)
         self._follow_top(scores, step_s)
         self._wait_for_pause(scores, passed_s)
@@ -132,29 +138,31 @@ class SentenceRule:
 
     def _wait_for_pause(self, scores: Floats, passed_s: float) -> None:
         """A diver who does not look signs on after a rejection: what follows is no new sentence before a pause."""
-        if self.search.is_wary:
+        if self._is_waiting:
             self._paused_s = 0.0 if scores[self._top] > 2 * math.log(STEADY) else self._paused_s + passed_s
-            self.search.is_wary = self._paused_s < PAUSE_S
+            self._is_waiting = self._paused_s < PAUSE_S
+        # What means something else inside a sentence opens none while one is open.
+        self.search.is_wary = self._is_waiting or (bool(self._told) and self._is_told_sure)
 
     # Signs that count by themselves
 
     def _spend(self, column: int) -> None:
         """A sign was read: it must be gone before it counts again."""
-        self._spent, self._absent_s = column, 0.0
+        self.search.spent, self._absent_s = column, 0.0
         self._steady_from = self.search.now
 
     def _heed_steady_sign(self, scores: Floats, step_s: float) -> bool:
         """Words of control, the second end word, and words that open nothing: they need no sentence around them."""
         search, reader = self.search, self._reader
-        if self._spent is not None:
-            is_there = scores[self._spent] > scores.max() - RELEASE_SCORE
+        if self.search.spent is not None:
+            is_there = scores[self.search.spent] > max(float(scores.max()), GAP_SCORE) - RELEASE_SCORE
             self._absent_s = 0.0 if is_there else self._absent_s + step_s
             if self._absent_s >= PASSAGE_S:
-                self._spent = None
+                self.search.spent = None
         if search.window is None or search.window_s < self._steady_from:
             return False
         column = int(search.window.argmax())
-        if column == self._spent:
+        if column == self.search.spent:
             return False
         likelihood, shown = search.likelihood(column), search.scores.shown(column)
         word = reader.word_of(shown)
@@ -180,7 +188,7 @@ class SentenceRule:
             return False
         self._spend(column)
         if word == self._grammar.end:
-            self.search.is_wary = False
+            self._is_waiting = False
         self._reader.read(self.search.hold(column, self.search.likelihood(column)))
         return True
 
@@ -199,6 +207,8 @@ class SentenceRule:
         if lead is None or reading is None:
             return
         self._tell(lead, reading, now_s)
+        if search.lead is None:
+            return
         if len(reading.spoken) >= self._grammar.limits.max_words and search.is_over(lead):
             self._reject(
                 Doubt(reason="limit", detail=f"a sentence has at most {self._grammar.limits.max_words} words")
@@ -276,9 +286,11 @@ class SentenceRule:
     def _judge(self, lead: int, reading: Reading, now_s: float) -> None:
         """A complete sentence: issue it, wait a little for a doubt to pass, or reject it."""
         search = self.search
+        waited = search.now - reading.touched
+        if waited < SETTLE_S and not search.is_over(lead):
+            return
         doubt = self._doubt(lead, reading)
         if doubt is not None:
-            waited = search.now - reading.touched
             if waited > PATIENCE_S and (search.is_over(lead) or waited > 2 * PATIENCE_S + search.hold_s):
                 self._reject(doubt, reading)
             return
@@ -347,7 +359,7 @@ class SentenceRule:
         if words:
             text = spell(words, self._grammar.vocabulary.join)
             self._reader.drop(doubt.reason, doubt.detail, text)
-            self.search.is_wary, self._paused_s = words[-1] != self._grammar.end, 0.0
+            self._is_waiting, self._paused_s = words[-1] != self._grammar.end, 0.0
         self._close()
 
     # Displays

@@ -1,7 +1,7 @@
 """Signs, a pair a frame, become words, and words become instructions."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from lightgesture.fsm.events import Event
 from lightgesture.fsm.language.grammar import Grammar
@@ -60,7 +60,12 @@ class Decoder:
         source: str | None = None,
     ) -> None:
         self.grammar = grammar
-        self._options = {"rule": rule, "hold": hold, "hold_seconds": hold_seconds, "caution": caution}
+        self._options: dict[str, Any] = {
+            "rule": rule,
+            "hold": hold,
+            "hold_seconds": hold_seconds,
+            "caution": caution,
+        }
         self._timeline = Timeline()
         self._reporter = Reporter(source, self._timeline)
         # Frames are asked for by their number alone, whatever the grammar's own rule.

@@ -36,7 +36,8 @@ class Pipeline:
 
     The decoder: rule: "frames", "seconds", "evidence" or "sentence", None for the grammar's own. hold: consecutive
     frames that a sign is held; hold_seconds: seconds instead; both None for the grammar's own. caution: of the rule
-    "sentence", how sure a sentence must be, None for the grammar's own. grammar: path of a grammar file, None for the bundled one.
+    "sentence", how sure a sentence must be, None for the grammar's own. grammar: path of a grammar file, None for the
+    bundled one.
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.

@@ -35,7 +35,7 @@ class Hand:
 
     def to_dict(self, probabilities: bool = False) -> dict[str, Any]:
         """probabilities: tell those from LEAST_TOLD up too."""
-        record = {
+        record: dict[str, Any] = {
             "side": self.side,
             "token": self.token,
             "confidence": self.confidence,

@@ -12,8 +12,9 @@ from lightgesture.fsm.signs import Signs
 class HoldRule:
     """Reads one held sign after the other.
 
-    dwell: tells what is held. unread: is told by the reader what was read. A sentence without a new word for `timeout_s` is dropped, and so is one in which hands
-    were seen for too long without saying a word, because a sign of it may have been missed.
+    dwell: tells what is held. unread: is told by the reader what was read. A sentence without a new word for
+    `timeout_s` is dropped, and so is one in which hands were seen for too long without saying a word, because a sign
+    of it may have been missed.
     """
 
     def __init__(

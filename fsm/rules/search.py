@@ -1,11 +1,11 @@
 """Many readings of one sentence at once: token passing through the grammar's table.
 
-A reading is the words so far and the sign of the last one. In every frame it is either in that sign or in the gap after
-it, and its score is that of the best way to cut the frames into signs and gaps (Young, Russell and Thornton, "Token
-passing: a simple conceptual model for connected speech recognition systems", Cambridge 1989). A sign lasts `hold_s` at
-least, so that a word enters with the scores of that long a window at once. Beside them runs the free loop, the best score
-of any signs in any order, words or not; how far a reading stays behind it tells whether it fits what was shown
-(utterance verification, as Rose and Paul, ICASSP 1990).
+A reading is the words so far and the sign of the last one. In every frame it is either in that sign or in the gap
+after it, and its score is that of the best way to cut the frames into signs and gaps (Young, Russell and Thornton,
+"Token passing: a simple conceptual model for connected speech recognition systems", Cambridge 1989). A sign lasts
+`hold_s` at least, so that a word enters with the scores of that long a window at once. Beside them runs the free
+loop, the best score of any signs in any order, words or not; how far a reading stays behind it tells whether it fits
+what was shown (utterance verification, as Rose and Paul, ICASSP 1990).
 """
 
 import math
@@ -33,14 +33,16 @@ SHORT_S: Final = 0.25
 """Seconds beyond the least length after which it is all given back."""
 
 JOIN_COST: Final = 3.0
-"""What a digit costs besides that follows another one without the joining word, once a sentence: hands that leave a digit
-pass through others. Nothing where the language has no joining word."""
+"""What a digit costs besides that follows another one without the joining word, once a sentence: hands that leave a
+digit pass through others. Nothing where the language has no joining word."""
 
 PASSAGE_S: Final = 0.1
-"""Least seconds of the passage from one sign to the next: a sign that changes its mind for a moment is no second word."""
+"""Least seconds of the passage from one sign to the next: a sign that changes its mind for a moment is no second
+word."""
 
 RELEASE_SCORE: Final = 1.0
-"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average in the passage if it comes again."""
+"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average in the passage if it
+comes again."""
 
 BEAM: Final = 12.0
 """How far behind the free loop a reading may be before it is given up, in units of score."""
@@ -70,9 +72,9 @@ Floats = NDArray[np.float64]
 class Spoken:
     """A word of a reading: when its sign began, and how well it was seen.
 
-    sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1; of
-    the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when the word began. fine: what the word cost
-    for its place alone.
+    sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1;
+    of the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when
+    the word began. fine: what the word cost for its place alone.
     """
 
     word: str
@@ -121,10 +123,11 @@ class Summary:
 class Search:
     """The readings of one stream, by slot; what changes in every frame lies in arrays over the slots.
 
-    held, gap: the score of a reading in its last sign, and in the gap after it. sure: the less sure hand's summed scores
-    over the best window of that sign. bridged: seconds with both hands in view since the sign was last the better of the two; longest: the most
-    of it so far. credit: what of SHORT_COST is still to be given back. is_wary: whether signs that mean something else
-    inside a sentence may open none. spent: a sign that may not, because it is still held from what was read before.
+    held, gap: the score of a reading in its last sign, and in the gap after it. sure: the less sure hand's summed
+    scores over the best window of that sign. bridged: seconds with both hands in view since the sign was last the
+    better of the two; longest: the most of it so far. credit: what of SHORT_COST is still to be given back. is_wary:
+    whether signs that mean something else inside a sentence may open none. spent: a sign that may not, because it is
+    still held from what was read before.
     """
 
     def __init__(self, grammar: Grammar, hold_s: float) -> None:
@@ -147,7 +150,9 @@ class Search:
 
     def _columns(self, pairs: Mapping[tuple[str, str], str], words: set[str]) -> dict[int, tuple[str, ...]]:
         """The words of each column that lead anywhere, those that say themselves too."""
-        found = {self.scores.column(pair): (word,) for pair, word in pairs.items() if word in words}
+        found: dict[int, tuple[str, ...]] = {
+            self.scores.column(pair): (word,) for pair, word in pairs.items() if word in words
+        }
         found.update({self.scores.column((word,)): (word,) for word in words & {*self.scores.words}})
         return found
 
@@ -190,8 +195,8 @@ class Search:
     # One frame
 
     def step(self, signs: Signs, passed_s: float, in_view_s: float, frame: int, time_s: float) -> Floats:
-        """Take in a frame, which stands for `passed_s` seconds; its scores. in_view_s: of them, those that count as passed
-        over where nothing is read."""
+        """Take in a frame, which stands for `passed_s` seconds; its scores. in_view_s: of them, those that count as
+        passed over where nothing is read."""
         scores, of_left = self.scores.of(signs)
         self.now += passed_s
         weight = passed_s * RATE
@@ -325,7 +330,8 @@ class Search:
         self._enter(Reading(spoken, state, 0, self._times[base], self.now, text, (word,)), score, 0.0)
 
     def _continue(self, slot: int, reading: Reading, column: int, score: float) -> None:
-        """A word goes on with a reading, where the table has it, or replaces the last one that was asked for again."""
+        """A word goes on with a reading, where the table has it, or replaces the last one that was asked for
+        again."""
         transitions = self._grammar.table.transitions
         for word in self._inside[column]:
             is_again = word in reading.asked

@@ -1,7 +1,7 @@
 """The rule "sentence": the best reading of the whole sentence is issued, or, where it is in doubt, nothing.
 
-Searching is `search`; here it is decided what the diver is told of it, and when a sentence is sure enough. A sentence is
-issued as soon as its end word was shown for the least length, if all of these hold, each bound made stricter by
+Searching is `search`; here it is decided what the diver is told of it, and when a sentence is sure enough. A sentence
+is issued as soon as its end word was shown for the least length, if all of these hold, each bound made stricter by
 `caution`:
 
 - the best reading with another text is clearly behind ("ambiguous"),
@@ -36,16 +36,19 @@ END: Final = 0.4
 """The same of the end word, without which nothing is issued."""
 
 MISFIT: Final = 4.0
-"""How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at caution 1."""
+"""How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at
+caution 1."""
 
 PASSED_S: Final = 0.4
 """Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
 
 LONGEST_STEP_S: Final = 0.25
-"""Longest time between two frames, seconds: no sign goes on across more, for of what was not looked at nothing is known."""
+"""Longest time between two frames, seconds: no sign goes on across more, for of what was not looked at nothing is
+known."""
 
 SETTLE_S: Final = 0.1
-"""How long an end word is looked at beyond its least length, seconds: the window over which it adds up is then its own."""
+"""How long an end word is looked at beyond its least length, seconds: the window over which it adds up is then its
+own."""
 
 PATIENCE_S: Final = 0.6
 """How long a complete sentence in doubt may stand after its end word before it is rejected, seconds."""
@@ -54,7 +57,8 @@ PAUSE_S: Final = 1.5
 """Seconds without a sign after which a sentence that was dropped on the way is over for the diver too."""
 
 STEADY: Final = 0.5
-"""Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second GO."""
+"""Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second
+GO."""
 
 SUMMARIES: Final = 5
 """Readings of a sentence that are kept for those who ask why."""

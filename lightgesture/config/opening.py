@@ -15,7 +15,8 @@ from lightgesture.results import DebugPictures
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:
     """The pipeline for one input, `source` being its name in the records.
 
-    UsageError: the model, the selector's data, the colour profile or the grammar is wrong, or options exclude each other.
+    UsageError: the model, the selector's data, the colour profile or the grammar is wrong, or options exclude each
+    other.
     """
     try:
         return Pipeline(

@@ -12,7 +12,8 @@ Path = str | None
 
 
 def init(path: str) -> str:
-    """Write the bundled grammar to a new file; what was done, in a line. UsageError: it is there, or cannot be written."""
+    """Write the bundled grammar to a new file; what was done, in a line. UsageError: it is there, or cannot be
+    written."""
     try:
         with open(path, "x", encoding="utf-8") as stream:
             stream.write(BUNDLED.read_text(encoding="utf-8"))

@@ -13,8 +13,9 @@ from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
 
 Extents = Literal["clearest", "mean"]
-"""What stands for a hand that may have several extents: the one in which some token is likeliest, which is the sharpest
-and can be sharply wrong where a box cuts off a finger, or the mean of all of them, which is in doubt where they differ."""
+"""What stands for a hand that may have several extents: the one in which some token is likeliest, which is the
+sharpest and can be sharply wrong where a box cuts off a finger, or the mean of all of them, which is in doubt where
+they differ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +105,8 @@ def read_token(
     """Token, confidence and reason of one hand from its row of probabilities (classes,).
 
     The token is None where `none` is most likely ("unknown_shape") or no token likely enough
-    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge and
-    before others the confidence of what is read is lowered, and must still suffice.
+    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge
+    and before others the confidence of what is read is lowered, and must still suffice.
     """
     best = int(np.argmax(probabilities))
     confidence = float(probabilities[best])
@@ -143,8 +144,8 @@ class ReadingStage:
     ) -> tuple[Hand, ...]:
         """Read every hand that is seen in one BGR frame, in the order of `hands`.
 
-        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame at
-        `time_s` seconds this is; None for a picture on its own.
+        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame
+        at `time_s` seconds this is; None for a picture on its own.
         """
         memory = memory or NO_MEMORY
         memory.keep_only([hand.number for hand in hands])

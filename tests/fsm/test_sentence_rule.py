@@ -151,7 +151,7 @@ def test_a_word_is_told_and_an_instruction_issued_within_the_limits(diver):
 
 def test_the_record_of_an_instruction(diver):
     diver.pause(1.0)
-    event = [event for event in diver.words("STOP HOVER 5 GO") if event.type == "instruction"][0]
+    (event,) = [event for event in diver.words("STOP HOVER 5 GO") if event.type == "instruction"]
     assert (event.text, event.kind, event.action, event.duration_s) == ("STOP HOVER 5 GO", "task", "HOVER", 5)
     assert event.words == ("STOP", "HOVER", "5", "GO")
     assert abs(event.start_time_s - 1.0) <= 0.1
@@ -172,7 +172,8 @@ def test_a_doubtful_digit_is_ambiguous(diver):
     diver.show(UNREAD, 0.25)
     events = diver.words("GO") + diver.pause()
     assert (issued(events), rejected(events)) == ([], ["ambiguous"])
-    assert "STOP HOVER 2 GO" in [event.detail for event in events if event.type == "rejected"][0]
+    (detail,) = [event.detail for event in events if event.type == "rejected"]
+    assert "STOP HOVER 2 GO" in detail
 
 
 def test_a_weak_sign_rejects_the_sentence_and_is_named(diver):
@@ -415,8 +416,10 @@ def test_memory_is_bounded_whatever_comes(grammar, rate):
     rng = random.Random(1)
     decoder = Decoder(grammar, rule="sentence")
     inner = decoder._rule.search
+    pair = ("0", "0")
     for frame in range(3000):
-        pair = rng.choice(list(grammar.idle_words)) if frame % 20 == 0 else pair
+        if frame % 20 == 0:
+            pair = rng.choice(list(grammar.idle_words))
         decoder.step(Signs(likely(pair[0], 0.5), likely(pair[1], 0.5)), frame / rate)
         assert len(inner._slots) <= search.MOST
         assert sum(reading is not None for reading in inner.readings) == len(inner._slots)

@@ -13,7 +13,7 @@ from lightgesture.fsm.signs import Shown
 def _plain(value: Any) -> Any:
     if isinstance(value, tuple):
         return list(value)
-    return value.to_dict() if isinstance(value, Growth) else value
+    return value.to_dict() if isinstance(value, Growth | Certainty) else value
 
 
 def _record(event: Any) -> dict[str, Any]:
@@ -30,6 +30,20 @@ class Growth:
 
     def to_dict(self) -> dict[str, Any]:
         return _record(self)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Certainty:
+    """How sure the best reading of the open sentence is, under the rule "sentence".
+
+    words: each with how well its sign was seen, 0 to 1. expected: what may follow, for the diver.
+    """
+
+    words: tuple[tuple[str, float], ...]
+    expected: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"words": [list(word) for word in self.words], "expected": self.expected}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +107,7 @@ class Rejected:
     """A sentence was dropped.
 
     reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled", "unread_sign" or
-    "unconfirmed".
+    "unconfirmed"; by the rule "sentence" also "ambiguous", "weak_sign", "passed_over" or "does_not_fit".
     text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
     """
 
@@ -113,7 +127,8 @@ class Rejected:
 class State:
     """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
 
-    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word.
+    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word. certainty:
+    how sure the words are; None, and no part of the record, where the rule does not tell.
     """
 
     type: Literal["state"] = field(default="state", init=False)
@@ -123,9 +138,13 @@ class State:
     state: str
     sentence: str
     dwell: Growth | None
+    certainty: Certainty | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        return _record(self)
+        record = _record(self)
+        if self.certainty is None:
+            del record["certainty"]
+        return record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,7 +152,7 @@ class Notice:
     """A sign that changed nothing.
 
     reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
-    open) or "confirm" (the end word is wanted again).
+    open), "confirm" (the end word is wanted again) or "repeat" (the last sign was seen too badly: show it again).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping
 from copy import copy
+from dataclasses import replace
 from typing import Self
 
 from lightgesture.features.colour import ColourStage
@@ -11,7 +12,8 @@ from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
-from lightgesture.hands import HandReader, ReadingStage
+from lightgesture.fsm.language.settings import SENTENCE, Rule
+from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
@@ -30,8 +32,12 @@ class Pipeline:
     the diver's hands, which replaces the map of skin colours; None for that map. mirrored: frames come from a selfie
     camera.
 
-    The decoder: hold: consecutive frames that a sign is held; hold_seconds: seconds instead; both None for the
-    grammar's own. grammar: path of a grammar file, None for the bundled one.
+    threshold: least probability of a token, 0 to 1; None for the reader's own.
+
+    The decoder: rule: "frames", "seconds", "evidence" or "sentence", None for the grammar's own. hold: consecutive
+    frames that a sign is held; hold_seconds: seconds instead; both None for the grammar's own. caution: of the rule
+    "sentence", how sure a sentence must be, None for the grammar's own. grammar: path of a grammar file, None for the
+    bundled one.
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.
@@ -48,8 +54,11 @@ class Pipeline:
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
+        threshold: float | None = None,
+        rule: Rule | None = None,
         hold: int | None = None,
         hold_seconds: float | None = None,
+        caution: float | None = None,
         grammar: str | os.PathLike[str] | None = None,
         source: str | None = None,
         frames: bool = True,
@@ -61,17 +70,31 @@ class Pipeline:
                 "selector": selector != "learned",
                 "profile": profile is not None,
                 "mirrored": mirrored,
+                "threshold": threshold is not None,
             }
             _refuse("front end", of_hands)
         if decoder is not None:
-            of_decoder = {"hold": hold, "hold_seconds": hold_seconds, "grammar": grammar}
+            of_decoder = {
+                "rule": rule,
+                "hold": hold,
+                "hold_seconds": hold_seconds,
+                "caution": caution,
+                "grammar": grammar,
+            }
             _refuse("decoder", {name: value is not None for name, value in of_decoder.items()})
         if decoder is None:
-            decoder = Decoder(load_grammar(grammar), hold=hold, hold_seconds=hold_seconds, source=source)
+            decoder = Decoder(
+                load_grammar(grammar),
+                rule=rule,
+                hold=hold,
+                hold_seconds=hold_seconds,
+                caution=caution,
+                source=source,
+            )
         if front is None:
             need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
-                ReadingStage(load_classifier(model)),
+                ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
                 find=RegionStage(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
                 memory=lambda: memory_for_hold(*need),
@@ -161,13 +184,22 @@ class Pipeline:
         return picture
 
     def _record(self, index: int | None, time_s: float | None) -> FrameRecord:
-        return FrameRecord(source=self._source, frame=index, time_s=time_s, **self.front.shown())
+        is_told = time_s is not None and self.decoder.rule == SENTENCE
+        return FrameRecord(
+            source=self._source, frame=index, time_s=time_s, probabilities=is_told, **self.front.shown()
+        )
 
     def _count(self, events: list[Event]) -> list[Record]:
         for event in events:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
         return list(events)
+
+
+def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:
+    """How hands are read for a rule: "sentence" wants to know where the extents of a hand differ."""
+    settings = ReadingSettings(extents="mean" if rule == SENTENCE else "clearest")
+    return settings if threshold is None else replace(settings, token_probability=threshold)
 
 
 def _refuse(half: str, is_given: Mapping[str, bool]) -> None:

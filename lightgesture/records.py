@@ -6,10 +6,13 @@ documented order.
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from lightgesture.features.types import Box
 from lightgesture.fsm import Event
+
+LEAST_TOLD: Final = 0.005
+"""Smallest probability in a record, 0 to 1: what is below changes no reading."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +22,7 @@ class Hand:
     side: "left" or "right", the diver's own. token: one of the ten, or None with a `reason`
     ("low_confidence", "unknown_shape", "partial", "occluded"). confidence: 0 to 1, calibrated.
     box: outline of the hand without the forearm, source pixels. track: number of the track, None in single pictures.
-    probabilities: of every class, 0 to 1, before the refusal; no part of the record.
+    probabilities: of every class, 0 to 1, before the refusal; part of the record only where it is asked for.
     """
 
     side: str
@@ -30,8 +33,9 @@ class Hand:
     reason: str | None
     probabilities: Mapping[str, float] = field(default_factory=dict, compare=False, repr=False)
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
+    def to_dict(self, probabilities: bool = False) -> dict[str, Any]:
+        """probabilities: tell those from LEAST_TOLD up too."""
+        record: dict[str, Any] = {
             "side": self.side,
             "token": self.token,
             "confidence": self.confidence,
@@ -39,17 +43,27 @@ class Hand:
             "track": self.track,
             "reason": self.reason,
         }
+        if probabilities:
+            rounded = {name: round(chance, 3) for name, chance in self.probabilities.items()}
+            record["probabilities"] = {
+                name: chance for name, chance in rounded.items() if chance >= LEAST_TOLD
+            }
+        return record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameRecord:
-    """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture."""
+    """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture.
+
+    probabilities: whether the record has those of the hands, which the rule "sentence" reads.
+    """
 
     type: str = field(default="frame", init=False)
     source: str | None
     frame: int | None
     time_s: float | None
     hands: tuple[Hand, ...] = ()
+    probabilities: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -57,7 +71,7 @@ class FrameRecord:
             "source": self.source,
             "frame": self.frame,
             "time_s": self.time_s,
-            "hands": [hand.to_dict() for hand in self.hands],
+            "hands": [hand.to_dict(self.probabilities) for hand in self.hands],
         }
 
 

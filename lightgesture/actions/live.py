@@ -77,7 +77,8 @@ def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
     a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
     changes: dict[str, object] = {"frames": True}
-    if settings.hold is None and settings.hold_seconds is None and settings.grammar is None:
+    given = settings.rule, settings.hold, settings.hold_seconds, settings.grammar
+    if given == (None, None, None, None):
         changes["hold_seconds"] = HOLD_S
     return settings.model_copy(update=changes)
 

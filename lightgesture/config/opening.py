@@ -40,12 +40,13 @@ def open_stream(
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:
     """The pipeline for one input, `source` being its name in the records.
 
-    UsageError: the model, the selector's data, the colour profile or the grammar is wrong.
+    UsageError: the model, the selector's data, the colour profile or the grammar is wrong, or options exclude each
+    other.
     """
     try:
         options = {name: getattr(settings, name) for name in PIPELINE_OPTIONS}
         return Pipeline(**options, source=source, debug=debug)
-    except (ModelError, SelectorError, ProfileError, GrammarError) as error:
+    except (ModelError, SelectorError, ProfileError, GrammarError, ValueError) as error:
         raise UsageError(str(error)) from error
 
 

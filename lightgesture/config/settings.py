@@ -16,6 +16,9 @@ MAX_JOBS = 1024
 MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 """Shortest and longest hold, seconds."""
 
+MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
+"""Least and greatest caution, as a grammar file may ask for."""
+
 MAX_FPS = 1000.0
 """Highest rate of a folder of frames, frames a second."""
 
@@ -66,6 +69,13 @@ class DecodeSettings(BaseModel):
     grammar: str | None = _option(
         None, "grammar file (default: the bundled one)", "FILE", kind="path", only=STREAMS
     )
+    rule: Literal["frames", "seconds", "evidence", "sentence"] | None = _option(
+        None,
+        "when signs count: each by itself, after a hold in frames or seconds or by evidence, or by the whole sentence"
+        " (default: the grammar's own)",
+        "frames|seconds|evidence|sentence",
+        only=STREAMS,
+    )
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
@@ -81,6 +91,24 @@ class DecodeSettings(BaseModel):
         only=STREAMS,
         ge=MIN_HOLD_S,
         le=MAX_HOLD_S,
+        allow_inf_nan=False,
+    )
+    caution: float | None = _option(
+        None,
+        "how sure a sentence must be to be issued, by the rule sentence: less issues more, and more that is wrong"
+        " (default: the grammar's own, else 1)",
+        "C",
+        only=STREAMS,
+        ge=MIN_CAUTION,
+        le=MAX_CAUTION,
+        allow_inf_nan=False,
+    )
+    threshold: float | None = _option(
+        None,
+        "least probability of a token, 0 to 1 (default: 0.7)",
+        "P",
+        ge=0,
+        le=1,
         allow_inf_nan=False,
     )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")

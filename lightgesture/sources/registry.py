@@ -26,7 +26,7 @@ SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
     "folder": lambda path, options: FrameFolder(path, options.fps),
     "standard input": lambda _, options: StandardInput(options),
-    "video": lambda path, _: VideoFile(path),
+    "video": lambda path, options: VideoFile(path, options.fps),
 }
 """Kind of input to what opens it, given its name and what the user says about it."""
 

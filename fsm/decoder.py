@@ -103,6 +103,20 @@ class Decoder:
             self._show_growth()
         return events
 
+    def interrupt(self, detail: str, time_s: float, frame: int | None = None) -> list[Event]:
+        """A hole before the frame stamped `time_s`: no hold spans it, and an open sentence is dropped as "timeout"."""
+        reporter = self._reporter
+        reporter.events = []
+        reporter.frame = reporter.frame if frame is None else frame
+        self._timeline.advance(time_s)
+        reporter.notice("gap", detail)
+        if self._reader.sentence is None:
+            self._dwell.reset()
+        else:
+            self._dwell.discard()
+            self._reader.drop("timeout", f"a sign may be missing: {detail}")
+        return reporter.events
+
     def finish(self) -> list[Event]:
         """The end of the stream: an open sentence is dropped as "cancelled"; the decoder is idle again."""
         self._reporter.events = []

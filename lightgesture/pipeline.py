@@ -3,6 +3,8 @@
 import os
 from collections.abc import Mapping
 from copy import copy
+from dataclasses import replace
+from datetime import datetime
 from typing import Self
 
 from lightgesture.features.colour import ColourStage
@@ -16,8 +18,9 @@ from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
-from lightgesture.records import FrameRecord, Record, SummaryRecord
+from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
 from lightgesture.threads import OneBlasThread
+from lightgesture.watch import Watch
 
 
 class Pipeline:
@@ -35,6 +38,9 @@ class Pipeline:
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.
+
+    start_utc: the moment at which time_s is 0, if that is known; it may be set before any frame, and gives the records
+    their `utc`.
     Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
     lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
     """
@@ -94,23 +100,31 @@ class Pipeline:
     def _begin(self, source: str | None, debug: PictureSink | None) -> None:
         """Everything that is counted over the stream."""
         self._source, self._debug = source, debug
+        self.start_utc: datetime | None = None
+        self._watch = Watch()
         self._index = 0
         self._processed = 0
         self._seconds = 0.0
         self._counts = {Instruction: 0, Rejected: 0}
 
-    def process(self, image_bgr: Image, time_s: float, index: int | None = None) -> list[Record]:
+    def process(
+        self, image_bgr: Image, time_s: float, index: int | None = None, gap: str | None = None
+    ) -> list[Record]:
         """Records of the next frame: its frame record, then what it led to.
 
         image_bgr: uint8 (height, width, 3), BGR; another size than before ends the tracks. time_s: seconds since
-        the start of the stream. index: position in the source, by default counted.
+        the start of the stream. index: position in the source, by default counted. gap: what the source says is missing
+        before this frame; a stalled camera and frames that show nothing are noticed without. No sentence spans a gap.
         """
         index = self._index if index is None else index
+        hole = self._watch.look(image_bgr, time_s)
+        gap = gap or hole
         clock = self.front.clock
         with self._one_thread.block():
             clock.start()
             signs = self.front.process(image_bgr, time_s)
-            events = self.decoder.step(signs, time_s, index)
+            events = [] if gap is None else self.decoder.interrupt(gap, time_s, index)
+            events += self.decoder.step(signs, time_s, index)
             clock.lap("decode")
             clock.end_frame()
         self._index, self._seconds = index + 1, time_s
@@ -128,10 +142,11 @@ class Pipeline:
         summary = SummaryRecord(
             source=self._source,
             frames=self._processed,
+            utc=utc_text(self.start_utc, self._seconds),
             seconds=round(self._seconds, 6),
             instructions=self._counts[Instruction],
             rejected=self._counts[Rejected],
-            status="ok",
+            status="blank" if self._watch.is_blank else "ok",
             ms_per_frame=self.front.clock.per_frame(),
             stages_ms=self.front.clock.per_stage(),
         )
@@ -153,13 +168,16 @@ class Pipeline:
         return picture
 
     def _record(self, index: int | None, time_s: float | None) -> FrameRecord:
-        return FrameRecord(source=self._source, frame=index, time_s=time_s, **self.front.shown())
+        utc = utc_text(self.start_utc, time_s)
+        return FrameRecord(source=self._source, frame=index, time_s=time_s, utc=utc, **self.front.shown())
 
     def _count(self, events: list[Event]) -> list[Record]:
         for event in events:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
-        return list(events)
+        if self.start_utc is None:
+            return list(events)
+        return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
 
 
 def _refuse(half: str, is_given: Mapping[str, bool]) -> None:

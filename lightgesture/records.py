@@ -1,11 +1,12 @@
 """The records of frames and summaries; words, instructions and the rest are the events of `fsm`.
 
-Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the
-documented order.
+Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the documented order.
+`utc` is the time of day, ISO 8601; None where the source has no absolute clock.
 """
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from lightgesture.features.types import Box
@@ -49,6 +50,7 @@ class FrameRecord:
     source: str | None
     frame: int | None
     time_s: float | None
+    utc: str | None = None
     hands: tuple[Hand, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
@@ -57,6 +59,7 @@ class FrameRecord:
             "source": self.source,
             "frame": self.frame,
             "time_s": self.time_s,
+            "utc": self.utc,
             "hands": [hand.to_dict() for hand in self.hands],
         }
 
@@ -65,12 +68,14 @@ class FrameRecord:
 class SummaryRecord:
     """Totals of one source.
 
-    frames: number processed. seconds: time of the last frame. ms_per_frame: "median" and "p95" of
+    frames: number processed. seconds, utc: time of the last frame. status: "ok", "failed" for a source that broke off,
+    or "blank" where most frames showed nothing. ms_per_frame: "median" and "p95" of
     the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
     """
 
     type: str = field(default="summary", init=False)
     source: str | None
+    utc: str | None = None
     frames: int
     seconds: float
     instructions: int
@@ -95,6 +100,7 @@ class HeartbeatRecord:
     type: str = field(default="heartbeat", init=False)
     source: str | None
     time_s: float
+    utc: str | None = None
     frames: int
     dropped: int
     ms_per_frame: float
@@ -102,6 +108,17 @@ class HeartbeatRecord:
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
+
+
+def utc_text(start: datetime | None, time_s: float | None) -> str | None:
+    """The moment `time_s` seconds after `start`, ISO 8601 in UTC to the millisecond; None where either is unknown."""
+    if start is None or time_s is None:
+        return None
+    try:
+        moment = start.astimezone(UTC) + timedelta(seconds=time_s)
+    except (OverflowError, ValueError):  # a stamp that is no time
+        return None
+    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 Record = FrameRecord | SummaryRecord | HeartbeatRecord | Event

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from datetime import UTC, datetime, timedelta
 from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_pipeline
@@ -46,6 +47,7 @@ def run_live(
     clock = _make_clock()
     mailbox = Mailbox()
     pipeline = open_pipeline(_for_pipeline(settings), source.name, debug)
+    pipeline.start_utc = datetime.now(UTC) - timedelta(seconds=clock())
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())

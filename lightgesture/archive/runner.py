@@ -90,6 +90,7 @@ class _Work:
         with ExitStack() as stack:
             source = stack.enter_context(self._task.open(self._settings))
             self._hear(Opened(self._task.place, source.frame_count))
+            self._pipeline.start_utc = source.start_utc
             self._open_files(stack)
             failure = self._process(source)
         summary = self._summary
@@ -139,12 +140,15 @@ class _Work:
                 raise
             failure = error
         self._write(_finish(self._pipeline, is_failed=failure is not None))
+        if failure is None and self._summary is not None and self._summary.status == "blank":
+            text = "most frames show nothing, all pixels being the same; look at the camera, or convert the input"
+            failure = InputError(f"{source.name}: {text}")
         return failure
 
     def _process_frame(self, frame: Frame) -> None:
         if self._debug is not None:
             self._debug.select(frame.time_s)
-        records: Sequence[Record] = self._pipeline.process(frame.image, frame.time_s, frame.index)
+        records: Sequence[Record] = self._pipeline.process(frame.image, frame.time_s, frame.index, frame.gap)
         if self._video is not None:
             self._video.write(frame.image, frame.time_s, records)
         self._write(records)

@@ -13,7 +13,7 @@ from lightgesture.errors import InputError
 from lightgesture.fsm import State
 from lightgesture.live.reader import Mailbox, Report, Snapshot
 from lightgesture.pipeline import Pipeline
-from lightgesture.records import FrameRecord, HeartbeatRecord, Record
+from lightgesture.records import FrameRecord, HeartbeatRecord, Record, utc_text
 from lightgesture.results import DebugPictures
 from lightgesture.sources import to_image
 
@@ -137,6 +137,7 @@ class LiveLoop:
         beat = HeartbeatRecord(
             source=self._source,
             time_s=round(now_s, 3),
+            utc=utc_text(self._pipeline.start_utc, now_s),
             frames=self._processed,
             dropped=self._mailbox.dropped,
             ms_per_frame=spent_ms,

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -55,6 +56,7 @@ class BagFile:
             self._reader.close()
             raise
         self.frame_count: int | None = sum(one.msgcount for one in self._connections)
+        self.start_utc: datetime | None = None
 
     def __enter__(self) -> Self:
         return self

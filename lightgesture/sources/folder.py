@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Iterator, Sequence
+from datetime import datetime
 from types import TracebackType
 from typing import Self
 
@@ -26,6 +27,7 @@ class FrameFolder:
         self._fps = fps
         self._files = list(files) or _list_pictures(path)
         self.frame_count: int | None = len(self._files)
+        self.start_utc: datetime | None = None
 
     def __enter__(self) -> Self:
         return self

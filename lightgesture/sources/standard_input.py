@@ -3,6 +3,7 @@
 import io
 import sys
 from collections.abc import Iterator
+from datetime import datetime
 from types import TracebackType
 from typing import IO, Self
 
@@ -87,6 +88,7 @@ class StandardInput:
     def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
         self.frame_count: int | None = None
+        self.start_utc: datetime | None = None
         self._fps = options.fps
         self._stream = StandardInputStream(options, stream)
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
+from datetime import datetime
 from types import TracebackType
 from typing import Self
 
@@ -22,6 +23,7 @@ class StreamFrames:
     def __init__(self, stream: LiveSource, clock: Callable[[], float] = time.monotonic) -> None:
         self.name = stream.name
         self.frame_count: int | None = None
+        self.start_utc: datetime | None = None
         self._stream, self._clock = stream, clock
 
     def __enter__(self) -> Self:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import datetime
 from types import TracebackType
 from typing import Final, Protocol, Self
 
@@ -23,7 +24,7 @@ class SourceOptions:
     """What the user may say about a source; each is used by some sources only."""
 
     fps: float = DEFAULT_FPS
-    """Frames a second of a folder and of standard input, above 0."""
+    """Frames a second, above 0, of what has no clock: a folder, standard input, a bare stream of H.264 or JPEG."""
     size: tuple[int, int] | None = None
     """Width and height in pixels: of raw standard input, which is taken for JPEG pictures without it; asked of a
     camera, which may give another."""
@@ -44,13 +45,15 @@ CHUNK_BYTES: Final = 1 << 16
 class Source(Protocol):
     """An open source of frames: a context manager that is iterated once, from the first frame to the last.
 
-    name: as the user wrote it. frame_count: how many frames it promises, None where it does not say.
+    name: as the user wrote it. frame_count: how many frames it promises, None where it does not say. start_utc: the
+    moment at which `time_s` is 0, None where no absolute clock tells.
     Iterating raises InputError after the last frame that could be read if that was not all: what was
     yielded before is good.
     """
 
     name: str
     frame_count: int | None
+    start_utc: datetime | None
 
     def __enter__(self) -> Self: ...
 

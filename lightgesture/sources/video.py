@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from datetime import datetime
 from types import TracebackType
 from typing import TYPE_CHECKING, Final, Self
 
@@ -27,7 +28,7 @@ SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
 
 SPARE_S: Final = 0.5
-"""Seconds that a duration may promise beyond the last frame of a file whose end was cut off, and all frames be there."""
+"""Seconds that a duration may promise beyond the last frame of a file that was cut off, and all frames be there."""
 
 _NO_TIME_STAMPS = 0x80
 """FFmpeg's flag of formats without a clock: elementary streams of H.264, HEVC, MJPEG and others."""
@@ -70,7 +71,7 @@ class VideoFile:
         self._counted = stream.frames
         estimate = 0 if self._duration_s is None else round(self._duration_s * rate)
         self.frame_count: int | None = self._counted or estimate or None
-        self.start_utc = creation_time({**stream.metadata, **container.metadata})
+        self.start_utc: datetime | None = creation_time({**stream.metadata, **container.metadata})
         start = container.start_time
         is_known = has_clock and start is not None
         self._clock = RecordingClock(start / _MICROSECONDS if is_known else None, self._period_s)

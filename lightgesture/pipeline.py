@@ -20,7 +20,6 @@ from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
 from lightgesture.threads import OneBlasThread
-from lightgesture.watch import Watch
 
 
 class Pipeline:
@@ -101,30 +100,23 @@ class Pipeline:
         """Everything that is counted over the stream."""
         self._source, self._debug = source, debug
         self.start_utc: datetime | None = None
-        self._watch = Watch()
         self._index = 0
         self._processed = 0
         self._seconds = 0.0
         self._counts = {Instruction: 0, Rejected: 0}
 
-    def process(
-        self, image_bgr: Image, time_s: float, index: int | None = None, gap: str | None = None
-    ) -> list[Record]:
+    def process(self, image_bgr: Image, time_s: float, index: int | None = None) -> list[Record]:
         """Records of the next frame: its frame record, then what it led to.
 
         image_bgr: uint8 (height, width, 3), BGR; another size than before ends the tracks. time_s: seconds since
-        the start of the stream. index: position in the source, by default counted. gap: what the source says is missing
-        before this frame; a stalled camera and frames that show nothing are noticed without. No sentence spans a gap.
+        the start of the stream. index: position in the source, by default counted.
         """
         index = self._index if index is None else index
-        hole = self._watch.look(image_bgr, time_s)
-        gap = gap or hole
         clock = self.front.clock
         with self._one_thread.block():
             clock.start()
             signs = self.front.process(image_bgr, time_s)
-            events = [] if gap is None else self.decoder.interrupt(gap, time_s, index)
-            events += self.decoder.step(signs, time_s, index)
+            events = self.decoder.step(signs, time_s, index)
             clock.lap("decode")
             clock.end_frame()
         self._index, self._seconds = index + 1, time_s
@@ -136,6 +128,13 @@ class Pipeline:
         records: list[Record] = [self._record(index, time_s)] if self._frames else []
         return records + self._count(events)
 
+    def interrupt(self, detail: str, time_s: float, index: int | None = None) -> list[Record]:
+        """Something is missing before the next frame, whose stamp and index these are: no sentence spans it.
+
+        detail: what is missing, in words. `lightgesture.watch` finds what no source tells of.
+        """
+        return self._count(self.decoder.interrupt(detail, time_s, index))
+
     def finish(self) -> list[Record]:
         """What is pending at the end of the stream, then the summary."""
         pending = self._count(self.decoder.finish())
@@ -146,7 +145,7 @@ class Pipeline:
             seconds=round(self._seconds, 6),
             instructions=self._counts[Instruction],
             rejected=self._counts[Rejected],
-            status="blank" if self._watch.is_blank else "ok",
+            status="ok",
             ms_per_frame=self.front.clock.per_frame(),
             stages_ms=self.front.clock.per_stage(),
         )

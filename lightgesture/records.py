@@ -68,9 +68,9 @@ class FrameRecord:
 class SummaryRecord:
     """Totals of one source.
 
-    frames: number processed. seconds, utc: time of the last frame. status: "ok", "failed" for a source that broke off,
-    or "blank" where most frames showed nothing. ms_per_frame: "median" and "p95" of
-    the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
+    frames: number processed. seconds, utc: time of the last frame. status: "ok", or "failed" for a source that broke
+    off or showed hardly anything. ms_per_frame: "median" and "p95" of the whole pipeline, milliseconds. stages_ms:
+    median milliseconds of each stage.
     """
 
     type: str = field(default="summary", init=False)

@@ -47,7 +47,6 @@ def run_live(
     clock = _make_clock()
     mailbox = Mailbox()
     pipeline = open_pipeline(_for_pipeline(settings), source.name, debug)
-    pipeline.start_utc = datetime.now(UTC) - timedelta(seconds=clock())
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
@@ -64,6 +63,7 @@ def run_live(
             frames=settings.frames,
             debug=debug,
             heartbeat_s=heartbeat_s,
+            start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
         )
         loop.run(stopping)
     if not settings.quiet:

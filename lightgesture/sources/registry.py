@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
-from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
+from lightgesture.sources.capture import open_camera, open_gstreamer
 from lightgesture.sources.folder import FrameFolder, natural_key
+from lightgesture.sources.network import NETWORK_SCHEMES, NetworkStream
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import DEFAULT_FPS, LiveSource, Source, SourceOptions
@@ -34,7 +35,7 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
     "http": _http_stream,
-    "network": lambda address, _: open_network(address),
+    "network": lambda address, _: NetworkStream(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
 """Kind of stream to what reads it, given its name and what the user says about it."""

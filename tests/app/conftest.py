@@ -43,7 +43,10 @@ class FakePipeline:
     def for_stream(self, source, debug=None):
         return FakePipeline(source=source, frames=self.frames, debug=debug, **self.options)
 
-    def process(self, image_bgr, time_s, index=None, gap=None):
+    def interrupt(self, detail, time_s, index=None):
+        return [Notice(reason="gap", detail=detail, source=self.source, frame=index, time_s=time_s)]
+
+    def process(self, image_bgr, time_s, index=None):
         assert image_bgr.dtype == np.uint8
         assert image_bgr.ndim == 3
         self.seen.append((index, time_s, image_bgr.shape))

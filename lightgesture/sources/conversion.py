@@ -73,7 +73,7 @@ class Converter:
         y, cg, co = planes[0], planes[1] - 128, planes[2] - 128
         rest = y - cg
         bgr = np.stack([rest - co, y + cg, rest + co], axis=-1)
-        return np.clip(np.rint(bgr), 0, 255).astype(np.uint8)
+        return np.asarray(np.clip(np.rint(bgr), 0, 255), np.uint8)
 
 
 class Deinterlacer:

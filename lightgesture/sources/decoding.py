@@ -2,7 +2,7 @@
 
 import heapq
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -61,7 +61,7 @@ class StreamDecoder:
         """Frames lost since the last picture."""
         return self._undecoded + self._unshown
 
-    def pictures(self) -> Iterator[Picture | None]:
+    def pictures(self) -> Generator[Picture | None, None, None]:
         """All pictures; None after a packet that gave none, for callers who wait no longer than they want to.
 
         av.FFmpegError: the container cannot be read on, by more than damage.
@@ -73,7 +73,7 @@ class StreamDecoder:
         for done in self._deinterlacer.flush():
             yield from self._convert(done)
 
-    def _packets(self) -> Iterator["Packet | None"]:
+    def _packets(self) -> Iterator["Packet[VideoStream] | None"]:
         """The packets with something in them; None last."""
         import av
 
@@ -91,7 +91,7 @@ class StreamDecoder:
                     break
         yield None
 
-    def _decode(self, packet: "Packet | None") -> list["VideoFrame"]:
+    def _decode(self, packet: "Packet[VideoStream] | None") -> list["VideoFrame"]:
         import av
 
         decoder = self._stream.codec_context

@@ -100,6 +100,10 @@ def _kind(name: str) -> str:
         return "folder"
     if os.path.isfile(name):
         return "video"
+    if _is_pipe(name):
+        raise InputError(
+            f"{name}: is a pipe; send pictures to standard input, as `lightgesture decode - < {name}`"
+        )
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
     if "://" in name:
@@ -136,7 +140,16 @@ def _stream_kind(name: str) -> str | None:
 
 
 def _is_device(name: str) -> bool:
+    return stat.S_ISCHR(_mode(name))
+
+
+def _is_pipe(name: str) -> bool:
+    return stat.S_ISFIFO(_mode(name))
+
+
+def _mode(name: str) -> int:
+    """Kind of file; 0 where there is none."""
     try:
-        return stat.S_ISCHR(os.stat(name).st_mode)
+        return os.stat(name).st_mode
     except (OSError, ValueError):
-        return False
+        return 0

@@ -27,7 +27,7 @@ DAMAGE_S: Final = 0.2
 SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
 
-SPARE_S: Final = 0.5
+SPARE_S: Final = 0.1
 """Seconds that a duration may promise beyond the last frame of a file that was cut off, and all frames be there."""
 
 _NO_TIME_STAMPS = 0x80
@@ -147,8 +147,8 @@ class VideoFile:
 
     def _has_all(self, read: int, last_s: float) -> bool:
         """Whether a file that was cut off lost no frame, but its index, say."""
-        if self._counted:
-            return read >= self._counted
+        if self._counted and read >= self._counted:
+            return True
         return self._duration_s is not None and last_s + self._period_s >= self._duration_s - SPARE_S
 
     def _why_nothing(self) -> str:

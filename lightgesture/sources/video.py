@@ -65,7 +65,7 @@ class VideoFile:
         container = self._container
         stream = self._stream = _choose(container, self.name)
         has_clock = not container.format.flags & _NO_TIME_STAMPS
-        rate = float(stream.average_rate or stream.guessed_rate or fps) if has_clock else fps
+        rate = self._rate = float(stream.average_rate or stream.guessed_rate or fps) if has_clock else fps
         self._period_s = 1 / rate
         self._duration_s = _seconds(stream, container) if has_clock else None
         self._counted = stream.frames
@@ -149,7 +149,9 @@ class VideoFile:
         """Whether a file that was cut off lost no frame, but its index, say."""
         if self._counted and read >= self._counted:
             return True
-        return self._duration_s is not None and last_s + self._period_s >= self._duration_s - SPARE_S
+        # Of a file that was cut off FFmpeg guesses the duration, but the count is in its header.
+        promised_s = self._counted / self._rate if self._counted else self._duration_s
+        return promised_s is not None and last_s + self._period_s >= promised_s - SPARE_S
 
     def _why_nothing(self) -> str:
         codec = self._stream.codec_context.name

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from av.video.stream import VideoStream
 
 DAMAGE_S: Final = 0.2
-"""Frames lost in a row, seconds, that are told as a gap: less than half of a hold hides no sign."""
+"""Seconds in which frames were lost that are told as a gap: less than half of a hold hides no sign."""
 
 SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
@@ -121,7 +121,7 @@ class VideoFile:
             gap = f"the time stamps jump back by {self._clock.jump_s:g} s"
         elif last is not None and last.image.shape != picture.image.shape:
             gap = f"the picture changes from {_size(last)} to {_size(picture)}"
-        elif last is not None and picture.lost * self._period_s >= DAMAGE_S:
+        elif last is not None and picture.lost and time_s - last.time_s >= DAMAGE_S:
             gap = f"{picture.lost} frames from {last.time_s:.2f} to {time_s:.2f} s are damaged"
         return Frame(picture.image, index, time_s, gap)
 

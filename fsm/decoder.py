@@ -24,6 +24,10 @@ class _Rule(Protocol):
         """Take in one frame at `now_s` seconds of a time that never runs back, `passed_s` after the one before it."""
         ...
 
+    def interrupt(self) -> None:
+        """Frames are missing: what was half signed comes to nothing. The decoder drops an open sentence."""
+        ...
+
     def finish(self) -> None:
         """The stream ends."""
         ...
@@ -148,6 +152,18 @@ class Decoder:
         now_s = timeline.advance(time_s)
         self._rule.process(signs, now_s, now_s - before_s)
         return events
+
+    def interrupt(self, detail: str, time_s: float, frame: int | None = None) -> list[Event]:
+        """A hole before the frame stamped `time_s`: no hold spans it, and an open sentence is dropped as "timeout"."""
+        reporter = self._reporter
+        reporter.events = []
+        reporter.frame = reporter.frame if frame is None else frame
+        self._timeline.advance(time_s)
+        reporter.notice("gap", detail)
+        self._rule.interrupt()
+        if self._reader.sentence is not None:
+            self._reader.drop("timeout", f"a sign may be missing: {detail}")
+        return reporter.events
 
     def finish(self) -> list[Event]:
         """The end of the stream: an open sentence is dropped as "cancelled"; the decoder is idle again."""

@@ -1,7 +1,8 @@
 """What the decoder says: frozen records, one class per `type`, keys in the documented order.
 
-Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame
-and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own, or the word of one card.
+Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame, `time_s` its time
+stamp in seconds, and `utc` the same as time of day (ISO 8601), put in by whoever knows it. A pair is (left hand, right
+hand), the diver's own, or the word of one card.
 """
 
 from dataclasses import dataclass, field, fields
@@ -58,6 +59,7 @@ class Word:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     pair: Shown
     word: str
     state: str
@@ -86,6 +88,7 @@ class Instruction:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     start_frame: int
     start_time_s: float
     text: str
@@ -115,6 +118,7 @@ class Rejected:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     reason: str
     text: str
     detail: str
@@ -135,6 +139,7 @@ class State:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     state: str
     sentence: str
     dwell: Growth | None
@@ -152,13 +157,15 @@ class Notice:
     """A sign that changed nothing.
 
     reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
-    open), "confirm" (the end word is wanted again) or "repeat" (the last sign was seen too badly: show it again).
+    open), "confirm" (the end word is wanted again), "repeat" (the last sign was seen too badly: show it again) or "gap"
+    (frames are missing or show nothing; an open sentence was dropped).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     reason: str
     detail: str
 

@@ -44,13 +44,13 @@ EXTRAS = {
     "lightgesture.synth": "train",
     "lightgesture.benchmarks": "train",
     "torch": "train",
+    "sklearn": "train",
     "matplotlib": "plots",
     "dask": "cluster",
     "distributed": "cluster",
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
-    "av": "av",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

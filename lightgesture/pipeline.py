@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
+from datetime import datetime
 from typing import Self
 
 from lightgesture.features.colour import ColourStage
@@ -18,7 +19,7 @@ from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
-from lightgesture.records import FrameRecord, Record, SummaryRecord
+from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
 from lightgesture.threads import OneBlasThread
 
 
@@ -41,6 +42,9 @@ class Pipeline:
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.
+
+    start_utc: the moment at which time_s is 0, if that is known; it may be set before any frame, and gives the records
+    their `utc`.
     Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
     lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
     """
@@ -125,6 +129,7 @@ class Pipeline:
     def _begin(self, source: str | None, debug: PictureSink | None) -> None:
         """Everything that is counted over the stream."""
         self._source, self._debug = source, debug
+        self.start_utc: datetime | None = None
         self._index = 0
         self._processed = 0
         self._seconds = 0.0
@@ -153,12 +158,20 @@ class Pipeline:
         records: list[Record] = [self._record(index, time_s)] if self._frames else []
         return records + self._count(events)
 
+    def interrupt(self, detail: str, time_s: float, index: int | None = None) -> list[Record]:
+        """Something is missing before the next frame, whose stamp and index these are: no sentence spans it.
+
+        detail: what is missing, in words. `lightgesture.watch` finds what no source tells of.
+        """
+        return self._count(self.decoder.interrupt(detail, time_s, index))
+
     def finish(self) -> list[Record]:
         """What is pending at the end of the stream, then the summary."""
         pending = self._count(self.decoder.finish())
         summary = SummaryRecord(
             source=self._source,
             frames=self._processed,
+            utc=utc_text(self.start_utc, self._seconds),
             seconds=round(self._seconds, 6),
             instructions=self._counts[Instruction],
             rejected=self._counts[Rejected],
@@ -185,15 +198,23 @@ class Pipeline:
 
     def _record(self, index: int | None, time_s: float | None) -> FrameRecord:
         is_told = time_s is not None and self.decoder.rule == SENTENCE
+        utc = utc_text(self.start_utc, time_s)
         return FrameRecord(
-            source=self._source, frame=index, time_s=time_s, probabilities=is_told, **self.front.shown()
+            source=self._source,
+            frame=index,
+            time_s=time_s,
+            utc=utc,
+            probabilities=is_told,
+            **self.front.shown(),
         )
 
     def _count(self, events: list[Event]) -> list[Record]:
         for event in events:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
-        return list(events)
+        if self.start_utc is None:
+            return list(events)
+        return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
 
 
 def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:

@@ -1,11 +1,12 @@
 """The records of frames and summaries; words, instructions and the rest are the events of `fsm`.
 
-Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the
-documented order.
+Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the documented order.
+`utc` is the time of day, ISO 8601; None where the source has no absolute clock.
 """
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
 from lightgesture.features.types import Box
@@ -62,6 +63,7 @@ class FrameRecord:
     source: str | None
     frame: int | None
     time_s: float | None
+    utc: str | None = None
     hands: tuple[Hand, ...] = ()
     probabilities: bool = False
 
@@ -71,6 +73,7 @@ class FrameRecord:
             "source": self.source,
             "frame": self.frame,
             "time_s": self.time_s,
+            "utc": self.utc,
             "hands": [hand.to_dict(self.probabilities) for hand in self.hands],
         }
 
@@ -79,12 +82,14 @@ class FrameRecord:
 class SummaryRecord:
     """Totals of one source.
 
-    frames: number processed. seconds: time of the last frame. ms_per_frame: "median" and "p95" of
-    the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
+    frames: number processed. seconds, utc: time of the last frame. status: "ok", or "failed" for a source that broke
+    off or showed hardly anything. ms_per_frame: "median" and "p95" of the whole pipeline, milliseconds. stages_ms:
+    median milliseconds of each stage.
     """
 
     type: str = field(default="summary", init=False)
     source: str | None
+    utc: str | None = None
     frames: int
     seconds: float
     instructions: int
@@ -109,6 +114,7 @@ class HeartbeatRecord:
     type: str = field(default="heartbeat", init=False)
     source: str | None
     time_s: float
+    utc: str | None = None
     frames: int
     dropped: int
     ms_per_frame: float
@@ -116,6 +122,17 @@ class HeartbeatRecord:
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
+
+
+def utc_text(start: datetime | None, time_s: float | None) -> str | None:
+    """The moment `time_s` seconds after `start`, ISO 8601 in UTC to the millisecond; None where either is unknown."""
+    if start is None or time_s is None:
+        return None
+    try:
+        moment = start.astimezone(UTC) + timedelta(seconds=time_s)
+    except (OverflowError, ValueError):  # a stamp that is no time
+        return None
+    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 Record = FrameRecord | SummaryRecord | HeartbeatRecord | Event

@@ -52,6 +52,13 @@ class HoldRule:
         if is_worth_showing and now_s - reporter.shown_s >= DISPLAY_INTERVAL_S:
             self._show_growth()
 
+    def interrupt(self) -> None:
+        """Frames are missing; inside a sentence the sign that was half held must not live on outside it."""
+        if self._reader.sentence is None:
+            self._dwell.reset()
+        else:
+            self._dwell.discard()
+
     def finish(self) -> None:
         """The end of the stream: a sign half held comes to nothing."""
         self._dwell.reset()

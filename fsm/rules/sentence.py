@@ -97,6 +97,11 @@ class SentenceRule:
         self._absent_s = self._steady_from = self._paused_s = 0.0
         self._top, self._top_s = -1, 0.0
 
+    def interrupt(self) -> None:
+        """Frames are missing: no reading spans them."""
+        self.search.reset()
+        self._reset()
+
     def finish(self) -> None:
         """The end of the stream."""
         self.search.reset()

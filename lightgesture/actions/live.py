@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from datetime import UTC, datetime, timedelta
 from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
@@ -66,6 +67,7 @@ def run_live(
             frames=settings.frames,
             debug=debug,
             heartbeat_s=heartbeat_s,
+            start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
         )
         loop.run(stopping)
     if not settings.quiet:

@@ -1,11 +1,12 @@
 """One input through the pipeline, records to files and messages.
 
-An input that fails before its first frame leaves no file. One that fails later, a video that ends early, keeps what
-was decoded: its records and its files end with a summary whose status is "failed". An interrupted input leaves no file.
+An input that fails before its first frame leaves no file. One that fails later, a video that ends early or shows hardly
+anything, keeps what was decoded: its records and its files end with a summary whose status is "failed". An interrupted
+input leaves no file.
 """
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -30,6 +31,7 @@ from lightgesture.results import (
     open_writer,
 )
 from lightgesture.sources import Source
+from lightgesture.watch import Watch
 
 
 class Runner:
@@ -89,12 +91,14 @@ class _Work:
         self._video: AnnotatedVideo | None = None
         self._files: list[str] = []
         self._summary: SummaryRecord | None = None
+        self._watch = Watch()
 
     def run(self) -> Outcome:
         """InputError: no frame could be decoded."""
         with ExitStack() as stack:
             source = stack.enter_context(self._task.open(self._settings))
             self._hear(Opened(self._task.place, source.frame_count))
+            self._pipeline.start_utc = source.start_utc
             self._open_files(stack)
             failure = self._process(source)
         summary = self._summary
@@ -143,13 +147,20 @@ class _Work:
             if not is_begun:
                 raise
             failure = error
+        if failure is None and self._watch.is_blank:
+            text = "most frames show nothing, all pixels being the same; look at the camera, or convert the input"
+            failure = InputError(f"{source.name}: {text}")
         self._write(_finish(self._pipeline, is_failed=failure is not None))
         return failure
 
     def _process_frame(self, frame: Frame) -> None:
         if self._debug is not None:
             self._debug.select(frame.time_s)
-        records: Sequence[Record] = self._pipeline.process(frame.image, frame.time_s, frame.index)
+        hole = self._watch.look(frame.image, frame.time_s)
+        records: list[Record] = []
+        if (gap := frame.gap or hole) is not None:
+            records += self._pipeline.interrupt(gap, frame.time_s, frame.index)
+        records += self._pipeline.process(frame.image, frame.time_s, frame.index)
         if self._video is not None:
             self._video.write(frame.image, frame.time_s, records)
         self._write(records)

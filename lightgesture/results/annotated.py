@@ -82,7 +82,7 @@ class AnnotatedVideo:
 
 @contextmanager
 def open_annotated_video(path: Path) -> Iterator[AnnotatedVideo]:
-    """Write an `.mp4` file that appears under its name when the block ends well. Needs the extra `av`."""
+    """Write an `.mp4` file that appears under its name when the block ends well."""
     import av
 
     with replacing(path) as temporary, open(temporary, "wb") as stream:

@@ -1,11 +1,10 @@
-"""Cameras, RTSP and other network streams, and GStreamer pipelines, read by OpenCV."""
+"""Cameras and GStreamer pipelines, read by OpenCV."""
 
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Self
-from urllib.parse import urlsplit, urlunsplit
 
 import cv2
 import numpy as np
@@ -15,9 +14,6 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.types import LiveSource, SourceOptions
-
-NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
-"""Beginnings of the addresses that FFmpeg opens."""
 
 _VIDEO_DEVICE = re.compile(r"/dev/video(\d+)")
 
@@ -86,14 +82,6 @@ def open_camera(name: str, options: SourceOptions) -> CaptureStream:
     return CaptureStream(name, target, cv2.CAP_ANY, wishes=wishes)
 
 
-def open_network(address: str) -> CaptureStream:
-    """A stream that FFmpeg reads, such as RTSP or H.264 over UDP, not yet opened."""
-    name = hide_login(address)
-    if not urlsplit(address).netloc:
-        raise UsageError(f"{name}: names no host; write {address.partition(':')[0]}://HOST:PORT/PATH")
-    return CaptureStream(name, address, cv2.CAP_FFMPEG, _timeouts())
-
-
 def open_gstreamer(line: str) -> CaptureStream:
     """A GStreamer pipeline that ends in `appsink`, not yet opened. UsageError: OpenCV was built without GStreamer."""
     if cv2.CAP_GSTREAMER not in cv2.videoio_registry.getStreamBackends():
@@ -102,15 +90,6 @@ def open_gstreamer(line: str) -> CaptureStream:
             "standard input as MJPEG"
         )
     return CaptureStream(line, line, cv2.CAP_GSTREAMER, _timeouts())
-
-
-def hide_login(address: str) -> str:
-    """The address without user and password. UsageError: it is no address."""
-    try:
-        parts = urlsplit(address)
-    except ValueError as error:
-        raise UsageError(f"{address}: is no address ({error}); write it as rtsp://HOST:PORT/PATH") from None
-    return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
 
 
 def _timeouts() -> list[int]:

@@ -8,8 +8,9 @@ from collections.abc import Callable, Iterable
 from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.bag import BagFile, is_bag
-from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
+from lightgesture.sources.capture import open_camera, open_gstreamer
 from lightgesture.sources.folder import FrameFolder, natural_key
+from lightgesture.sources.network import NETWORK_SCHEMES, NetworkStream
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source, SourceOptions
@@ -27,7 +28,7 @@ SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
     "folder": lambda path, options: FrameFolder(path, options.fps),
     "standard input": lambda _, options: StandardInput(options),
-    "video": lambda path, _: VideoFile(path),
+    "video": lambda path, options: VideoFile(path, options.fps),
 }
 """Kind of input to what opens it, given its name and what the user says about it."""
 
@@ -35,7 +36,7 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
     "http": _http_stream,
-    "network": lambda address, _: open_network(address),
+    "network": lambda address, _: NetworkStream(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
 """Kind of stream to what reads it, given its name and what the user says about it."""
@@ -100,6 +101,10 @@ def _kind(name: str) -> str:
         return "folder"
     if os.path.isfile(name):
         return "video"
+    if _is_pipe(name):
+        raise InputError(
+            f"{name}: is a pipe; send pictures to standard input, as `lightgesture decode - < {name}`"
+        )
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
     if "://" in name:
@@ -136,7 +141,16 @@ def _stream_kind(name: str) -> str | None:
 
 
 def _is_device(name: str) -> bool:
+    return stat.S_ISCHR(_mode(name))
+
+
+def _is_pipe(name: str) -> bool:
+    return stat.S_ISFIFO(_mode(name))
+
+
+def _mode(name: str) -> int:
+    """Kind of file; 0 where there is none."""
     try:
-        return stat.S_ISCHR(os.stat(name).st_mode)
+        return os.stat(name).st_mode
     except (OSError, ValueError):
-        return False
+        return 0

@@ -47,6 +47,9 @@ class FakePipeline:
     def check_language(self):
         return "classes of the model that the grammar does not know: shaka" if self.unknown else None
 
+    def interrupt(self, detail, time_s, index=None):
+        return [Notice(reason="gap", detail=detail, source=self.source, frame=index, time_s=time_s)]
+
     def process(self, image_bgr, time_s, index=None):
         assert image_bgr.dtype == np.uint8
         assert image_bgr.ndim == 3

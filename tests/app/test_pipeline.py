@@ -50,6 +50,7 @@ def test_a_stream_of_nothing_gives_frame_records_and_a_summary():
             "source": "black",
             "frame": index,
             "time_s": index / 30,
+            "utc": None,
             "hands": [],
         }
     (summary,) = pipeline.finish()

@@ -10,7 +10,6 @@ import pytest
 from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError
 from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
-from lightgesture.sources.video import VideoFile
 
 
 def read_all(path, **options):
@@ -67,17 +66,6 @@ def test_video_that_ends_early_yields_what_there_is(make_video, name, fourcc):
     with open_source(path) as source, pytest.raises(InputError, match=r"ends early, after \d+ of 60 frames"):
         frames.extend(source)
     assert 10 < len(frames) < 50
-
-
-@pytest.mark.parametrize("spared", [{"SPARE_S": 2.0}, {"SPARE_FRAMES": 50}])
-def test_lost_frames_within_what_is_spared_are_forgiven(make_video, monkeypatch, spared):
-    path = make_video("a.avi", 60)
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) // 2])
-    for name, value in spared.items():
-        monkeypatch.setattr(f"lightgesture.sources.video.{name}", value)
-    with VideoFile(str(path)) as source:
-        assert len(list(source)) < 50
 
 
 @pytest.mark.parametrize(
@@ -268,8 +256,7 @@ def test_hostile_names_of_videos(make_video, name, monkeypatch, tmp_path):
 
 
 def test_name_that_is_no_utf8(make_video, make_picture):
-    with pytest.raises(InputError, match="the name is not UTF-8; rename"):
-        open_source(make_video("\udcff.avi", 3))
+    assert len(read_all(make_video("\udcff.avi", 3))) == 3
     assert len(read_all(make_picture("\udcff/\udcff.png").parent)) == 1
 
 

@@ -143,7 +143,8 @@ def test_wrong_usage_is_one_line(run, fake, monkeypatch, arguments, reason):
 def test_signals_end_it_with_the_summary_last(number, status):
     with MjpegServer(FILES, fps=50) as server, live(server.address, "--json") as child:
         beats = records_until(child, lambda record: record["type"] == "heartbeat" and record["frames"] > 3)
-        assert list(beats[-1]) == ["type", "source", "time_s", "frames", "dropped", "ms_per_frame", "state"]
+        keys = ["type", "source", "time_s", "utc", "frames", "dropped", "ms_per_frame", "state"]
+        assert list(beats[-1]) == keys
         assert beats[-1]["source"] == server.address
         child.send_signal(number)
         rest = [json.loads(line) for line in child.stdout]

@@ -63,8 +63,11 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "model": "cnn",
         "selector": "learned",
         "profile": None,
+        "rule": None,
         "hold": 3,
         "hold_seconds": None,
+        "caution": None,
+        "threshold": None,
         "grammar": "my.toml",
         "mirrored": True,
     }
@@ -76,8 +79,11 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "model": "cnn",
         "selector": "learned",
         "profile": None,
+        "rule": None,
         "hold": None,
         "hold_seconds": None,
+        "caution": None,
+        "threshold": None,
         "grammar": None,
         "mirrored": False,
     }

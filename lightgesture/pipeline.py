@@ -3,25 +3,30 @@
 import os
 from collections.abc import Mapping
 from copy import copy
-from typing import Self
+from typing import Any, Self
+
+from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd
-from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
 from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord
+from lightgesture.stage_clock import StageClock
 from lightgesture.threads import OneBlasThread
 
 
 class Pipeline:
     """Decodes one stream of frames; make another for another stream, or take `for_stream`.
+
+    As a context manager it lets go of what it has loaded when its block ends.
 
     front, decoder: the two halves; None: what the options below make.
 
@@ -81,6 +86,16 @@ class Pipeline:
         self._frames, self._one_thread = frames, OneBlasThread()
         self._begin(source, debug)
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the nets; what is asked to decode after raises ValueError. Others of `for_stream` go on."""
+        self.front = _ClosedFront(self.front.clock)
+
     def for_stream(self, source: str | None, debug: PictureSink | None = None) -> Self:
         """Another pipeline of the same settings, for another stream, with what this one has loaded.
 
@@ -99,7 +114,7 @@ class Pipeline:
         self._seconds = 0.0
         self._counts = {Instruction: 0, Rejected: 0}
 
-    def process(self, image_bgr: Image, time_s: float, index: int | None = None) -> list[Record]:
+    def process(self, image_bgr: NDArray[Any], time_s: float, index: int | None = None) -> list[Record]:
         """Records of the next frame: its frame record, then what it led to.
 
         image_bgr: uint8 (height, width, 3), BGR; another size than before ends the tracks. time_s: seconds since
@@ -137,7 +152,7 @@ class Pipeline:
         )
         return [*pending, summary]
 
-    def recognize(self, image_bgr: Image) -> FrameRecord:
+    def recognize(self, image_bgr: NDArray[Any]) -> FrameRecord:
         """The signs in a single picture, without memory: `frame` and `time_s` are None."""
         with self._one_thread.block():
             self.front.recognize(image_bgr)
@@ -160,6 +175,16 @@ class Pipeline:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
         return list(events)
+
+
+class _ClosedFront(FrontEnd):
+    """Stands in the place of one that was let go."""
+
+    def __init__(self, clock: StageClock) -> None:
+        self.clock = clock
+
+    def process(self, image: Image, time_s: float) -> Signs:
+        raise ValueError("this pipeline is closed; make another")
 
 
 def _refuse(half: str, is_given: Mapping[str, bool]) -> None:

@@ -6,7 +6,7 @@ documented order.
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from lightgesture.features.types import Box
 from lightgesture.fsm import Event
@@ -45,7 +45,7 @@ class Hand:
 class FrameRecord:
     """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture."""
 
-    type: str = field(default="frame", init=False)
+    type: Literal["frame"] = field(default="frame", init=False)
     source: str | None
     frame: int | None
     time_s: float | None
@@ -69,7 +69,7 @@ class SummaryRecord:
     the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
     """
 
-    type: str = field(default="summary", init=False)
+    type: Literal["summary"] = field(default="summary", init=False)
     source: str | None
     frames: int
     seconds: float
@@ -92,7 +92,7 @@ class HeartbeatRecord:
     heartbeat; 0 where none came. state: "idle" or "collecting", the decoder's.
     """
 
-    type: str = field(default="heartbeat", init=False)
+    type: Literal["heartbeat"] = field(default="heartbeat", init=False)
     source: str | None
     time_s: float
     frames: int

@@ -183,7 +183,7 @@ class _ClosedFront(FrontEnd):
     def __init__(self, clock: StageClock) -> None:
         self.clock = clock
 
-    def process(self, image: Image, time_s: float) -> Signs:
+    def process(self, image: Image, time_s: float) -> Signs:  # noqa: ARG002 - those of its base
         raise ValueError("this pipeline is closed; make another")
 
 

@@ -21,7 +21,7 @@ from lightgesture.features.find.settings import ALONE_CONFIDENCE, CLASSICAL, LEA
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
-from lightgesture.features.types import Box, Candidates, HandRegion, Image, Side
+from lightgesture.features.types import Box, Candidates, HandRegion, Side
 
 SelectorName = Literal["learned", "classical"]
 SELECTORS: tuple[SelectorName, ...] = ("learned", "classical")

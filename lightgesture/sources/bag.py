@@ -3,29 +3,47 @@
 import os
 from collections.abc import Iterator
 from contextlib import suppress
+from datetime import UTC, datetime
+from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import NamedTuple
 
+from lightgesture.console import say
 from lightgesture.errors import InputError
+from lightgesture.features.types import Image
 from lightgesture.frames import Frame
+from lightgesture.sources.bag_clock import LOOKED_AT, BagClock, has_stamps
+from lightgesture.sources.bag_messages import (
+    NANOSECONDS,
+    PictureMessage,
+    is_packet,
+    picture_type,
+    read_message,
+)
+from lightgesture.sources.bag_scan import UNCLOSED, ScanError
+from lightgesture.sources.bag_storage import FILE_SUFFIXES, Bag, storage_files
+from lightgesture.sources.packets import PacketDecoder
 from lightgesture.sources.pictures import depth_of
-from lightgesture.sources.ros_images import IMAGE_TYPES, message_to_bgr8
+from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.types import Source
 
-if TYPE_CHECKING:
-    from rosbags.highlevel import AnyReader
-    from rosbags.interfaces import Connection
-
-_SUFFIXES = (".bag", ".mcap", ".db3")
 _METADATA, _METADATA_KEY, _METADATA_BYTES = "metadata.yaml", b"rosbag2_bagfile_information", 4096
-_NANOSECONDS = 1_000_000_000
+_YEAR_2000_NS = 946_684_800 * NANOSECONDS
+"""A clock that is before it is that of a simulation, or counts from the start of a machine."""
 
 
 def is_bag(path: str) -> bool:
-    """Whether the name is that of a bag: a file's by its ending, a folder's by the metadata in it."""
+    """Whether the name is that of a bag: a file's by its ending, a folder's by what lies in it.
+
+    The folder of a recorder that was killed has no metadata, but files that end as those of bags do.
+    """
     if os.path.isdir(path):
-        return _is_metadata(os.path.join(path, _METADATA))
-    return os.path.isfile(path) and path.lower().endswith(_SUFFIXES)
+        if _is_metadata(os.path.join(path, _METADATA)):
+            return True
+        with suppress(OSError):
+            return bool(storage_files(Path(path)))
+        return False
+    return os.path.isfile(path) and path.lower().endswith(FILE_SUFFIXES)
 
 
 def _is_metadata(path: str) -> bool:
@@ -37,95 +55,131 @@ def _is_metadata(path: str) -> bool:
         return False
 
 
-class BagFile(Source):
-    """The images of one topic of a bag, in the order in which they were recorded.
+class _Entry(NamedTuple):
+    """A message with its place in the topic; `kind`: as of `picture_type`. message: or what is wrong with it."""
 
-    topic: its name; None takes the only image topic there is. The time of a frame is that of its message's header,
-    counted from the first; where a header has none, the time at which the message was recorded. Messages that hold no
-    picture are left out; after the last one InputError tells how many. InputError when opened: no bag, no such topic,
-    no image topic or several of them.
+    index: int
+    kind: str
+    recorded_ns: int
+    message: PictureMessage | ValueError
+
+
+class BagFile(Source):
+    """The images of one topic of a bag, in the order in which they were recorded: pictures, or packets of a video.
+
+    topic: its name; None takes the only image topic there is. The clock is that of the headers of its messages, or,
+    where most have none, the times at which they were recorded; seconds from the first frame. start_utc: the moment of
+    it, None for a clock of its own. Messages that hold no picture are left out; after the last one InputError tells how
+    many, and whether the bag is damaged or was cut off. InputError when opened: no bag, no such topic, no image topic
+    or several of them.
     """
 
     def __init__(self, path: str, topic: str | None = None) -> None:
         self.name = path
-        self._reader = _open(path)
+        self.start_utc: datetime | None = None
+        self._start_ns: int | None = None
+        self._damage: str | None = None
+        self._left_out: list[str] = []
+        self._given = 0
+        self._bag = Bag(path)
         try:
-            self._connections = _choose(self._reader, path, topic)
-        except InputError:
-            self._reader.close()
+            self._topic = _choose(self._bag, path, topic)
+            if self._bag.remark is not None:
+                say(f"{path}: {self._bag.remark}")
+            counts = [count for one, count in self._bag.channels.items() if one.topic == self._topic]
+            self.frame_count = sum(counts)
+            self._entries = self._read()
+            self._first = list(islice(self._entries, LOOKED_AT))
+        except BaseException:
+            self._bag.close()
             raise
-        self.frame_count = sum(one.msgcount for one in self._connections)
+        stamps = [one.message.stamp_ns for one in self._first if isinstance(one.message, PictureMessage)]
+        self._clock = BagClock(has_stamps(stamps))
 
     def close(self) -> None:
         """Close the bag."""
-        self._reader.close()
+        self._bag.close()
 
     def __iter__(self) -> Iterator[Frame]:
-        left_out: list[str] = []
         depth = depth_of(self.name)
-        start_ns: int | None = None
-        for index, (connection, recorded_ns, data) in enumerate(self._messages()):
+        decoder: PacketDecoder | None = None
+        for index, kind, recorded_ns, message in chain(self._first, self._entries):
+            stamp_ns = message.stamp_ns if isinstance(message, PictureMessage) else 0
+            time_ns = self._clock.read(stamp_ns, recorded_ns)
             try:
-                message = self._deserialize(connection, data)
-                image = message_to_bgr8(message, depth)
+                if isinstance(message, ValueError):
+                    raise message
+                if not is_packet(kind, message):
+                    yield self._frame(message_to_bgr8(message, depth), index, time_ns)
+                    continue
+                decoder = decoder or PacketDecoder(message.format or "")
+                pictures = decoder.feed(index, time_ns, message.data)
             except ValueError as error:
-                left_out.append(f"message {index} {error}")
+                self._left_out.append(f"message {index} {error}")
                 continue
-            time_ns = _stamp(message) or recorded_ns
-            start_ns = time_ns if start_ns is None else start_ns
-            yield Frame(image, index, round((time_ns - start_ns) / _NANOSECONDS, 6))
-        if left_out:
-            raise InputError(
-                f"{self.name}: {len(left_out)} of {self.frame_count} messages left out; the first: {left_out[0]}"
-            )
+            yield from self._video_frames(pictures)
+        if decoder is not None:
+            yield from self._video_frames(decoder.flush())
+        self._check_end()
 
-    def _messages(self) -> Iterator[tuple["Connection", int, bytes]]:
+    def _video_frames(self, pictures: list[tuple[Image, int]]) -> Iterator[Frame]:
+        for image, time_ns in pictures:
+            if not self._given and self._left_out:
+                # A recorder that joined in the middle has packets that need one before its first.
+                say(f"{self.name}: {len(self._left_out)} messages before the first whole picture")
+                self._left_out.clear()
+            yield self._frame(image, self._given + len(self._left_out), time_ns)
+
+    def _frame(self, image: Image, index: int, time_ns: int) -> Frame:
+        self._given += 1
+        if self._start_ns is None:
+            self._start_ns = time_ns
+            if time_ns >= _YEAR_2000_NS:
+                self.start_utc = datetime.fromtimestamp(time_ns / NANOSECONDS, UTC)
+        return Frame(image, index, round((time_ns - self._start_ns) / NANOSECONDS, 6))
+
+    def _read(self) -> Iterator[_Entry]:
+        index = 0
         try:
-            yield from self._reader.messages(self._connections)
-        except Exception as error:  # the reader leaves it to its storage what a damaged file raises
-            raise InputError(f"{self.name}: the bag is damaged ({error}); copy or record it again") from None
+            for channel, recorded_ns, data in self._bag.messages(self._topic):
+                kind = picture_type(channel.msgtype)
+                if kind is not None:
+                    yield _Entry(index, kind, recorded_ns, _parse(kind, data, channel.written))
+                    index += 1
+        except ScanError as error:
+            self._damage = str(error)
 
-    def _deserialize(self, connection: "Connection", data: bytes) -> Any:
-        try:
-            return self._reader.deserialize(data, connection.msgtype)
-        except Exception as error:  # as above, for the bytes of one message
-            raise ValueError(f"cannot be read ({error})") from None
+    def _check_end(self) -> None:
+        """InputError: not all could be read."""
+        wrong: list[str] = []
+        if self._damage == UNCLOSED and not self._left_out:
+            say(f"{self.name}: the bag {UNCLOSED}; read as far as it goes, {self._given} pictures")
+        elif self._damage is not None:
+            wrong.append(f"the bag {self._damage}, {self._given} pictures of it could be read")
+        if self._left_out:
+            count = f"{len(self._left_out)} of {self.frame_count} messages left out"
+            wrong.append(f"{count}; the first: {self._left_out[0]}")
+        if wrong:
+            raise InputError(f"{self.name}: {'; '.join(wrong)}")
 
 
-def _open(path: str) -> "AnyReader":
+def _parse(kind: str, data: bytes, written: str) -> PictureMessage | ValueError:
     try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise InputError(f"{path}: is a bag; install lightgesture[bag] to read it") from None
-    try:
-        # Older ROS 2 bags do not say what their messages look like; images have not changed since.
-        reader = AnyReader([Path(path)], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
-        reader.open()
-    except Exception as error:  # the reader leaves it to its storage what a damaged file raises
-        raise InputError(f"{path}: is no bag that can be read ({error}); copy or record it again") from None
-    return reader
+        return read_message(kind, data, written)
+    except ValueError as error:
+        return error
 
 
-def _choose(reader: "AnyReader", path: str, topic: str | None) -> list["Connection"]:
-    images = [one for one in reader.connections if one.msgtype in IMAGE_TYPES]
-    names = sorted({one.topic for one in images})
+def _choose(bag: Bag, path: str, topic: str | None) -> str:
+    names = sorted({one.topic for one in bag.channels if picture_type(one.msgtype) is not None})
     if topic is None and len(names) > 1:
         raise InputError(
             f"{path}: holds {len(names)} image topics; choose one with --topic: {', '.join(names)}"
         )
     if not names:
-        others = ", ".join(sorted({one.topic for one in reader.connections})) or "none at all"
+        others = ", ".join(sorted({one.topic for one in bag.channels})) or "none at all"
         raise InputError(f"{path}: holds no image topic; its topics: {others}")
     wanted = names[0] if topic is None else topic
     if wanted not in names:
         raise InputError(f"{path}: has no image topic {wanted}; those there are: {', '.join(names)}")
-    return [one for one in images if one.topic == wanted]
-
-
-def _stamp(message: Any) -> int:
-    """Nanoseconds of the message's header, 0 where it has none."""
-    with suppress(AttributeError):
-        stamp = message.header.stamp
-        return int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec)
-    return 0
+    return wanted

@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.front_end import StageClock
 from lightgesture.pipeline import Pipeline
 from lightgesture.sources import DEFAULT_FPS
-from lightgesture.stage_clock import StageClock
 
 Image = NDArray[np.uint8]
 Times = Mapping[str, Sequence[float]]

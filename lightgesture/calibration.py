@@ -82,9 +82,9 @@ def calibrate(source: Source, kind: Kind, place: Place, seconds: float) -> Calib
 
 def show_hands(source: Source, place: Place, seconds: float) -> Shown:
     """Pictures of the first seconds that show hands: both where enough pictures do, else one."""
-    boxes_in = _Finder().boxes if place is None else _Placer(place, source.name).boxes
+    boxes_in = FoundHands().boxes if place is None else PlacedHands(place, source.name).boxes
     found: list[tuple[Image, tuple[Box, ...]]] = []
-    pictures, broke_off = _look(source, seconds)
+    pictures, broke_off = look_at(source, seconds)
     for colour in pictures:
         boxes = boxes_in(colour)
         if boxes:
@@ -120,7 +120,7 @@ def _lack(separation: float, share: float) -> str | None:
     return None
 
 
-class _Placer:
+class PlacedHands:
     """Takes the boxes that the user named, the same in every picture."""
 
     def __init__(self, place: Sequence[Box] | Middle, name: str) -> None:
@@ -141,7 +141,7 @@ class _Placer:
         return list(self._place)
 
 
-class _Finder:
+class FoundHands:
     """Finds hands picture by picture with the learned choice, which needs no profile."""
 
     def __init__(self) -> None:
@@ -153,7 +153,7 @@ class _Finder:
         return [hand.box for hand in hands]
 
 
-def _look(source: Source, seconds: float) -> tuple[list[ColourMap], str | None]:
+def look_at(source: Source, seconds: float) -> tuple[list[ColourMap], str | None]:
     """Working pictures at even distances over the first seconds, and why these are fewer, if the source broke off.
 
     At most twice as many as are wanted are held: where they overflow, every other one goes, and from there on only one

@@ -18,3 +18,8 @@ class InputError(Exception):
 
 class UsageError(Exception):
     """Wrong use or configuration: an option, a model, a grammar, an output folder. Exit status 2."""
+
+
+def reason_of(error: BaseException) -> str:
+    """What the system or a library says went wrong, for the brackets of a message; never empty."""
+    return str(getattr(error, "strerror", None) or error or type(error).__name__)

@@ -11,7 +11,6 @@ import numpy as np
 
 from lightgesture.synth.skeleton import FloatArray, HandPose
 
-TOKENS = ("0", "1", "2", "3", "4", "5", "left", "right", "pic", "ok")
 SIDE_THUMB_TOKENS = ("left", "right")
 FREE_THUMB = frozenset({"5", "left", "right", "pic", "shaka", "love", "relaxed", "claw"})
 """Shapes whose thumb touches nothing and varies freely."""
@@ -92,6 +91,7 @@ TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
         _ring((16.0, 40.0, 24.0, 24.0), (60.0, -2.0, 60.0, 26.0), fan=0.2),
     ),
 }
+TOKENS = tuple(TOKEN_SHAPES)
 OTHER_SHAPES: dict[str, FloatArray] = {
     "shaka": _shape(THUMB_STRETCHED, 4),
     "horns": _shape(THUMBS_OVER_RING[0], 1, 4),

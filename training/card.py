@@ -3,36 +3,106 @@
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture._version import __version__
 from lightgesture.models import NONE
-from lightgesture.training.pool.patch_kinds import Originals
+from lightgesture.training.pool.kept_sources import LEAST_FITTED, ONE_IN, HeldOut
+from lightgesture.training.pool.patch_kinds import RENDERED_SOURCE, Originals
+from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.pool.samples import HandRow
-from lightgesture.training.svm.machine import HeldOut
 
-LIMITS = (
-    "Trained on bare hands in air; water and darkness are simulated. Gloves were seen on a few rendered hands only.",
-    "Hands seen obliquely, half closed, or with the fingers together are rarer in the data than in life.",
-    "A region that is no hand can still be read as a token: ask for several equal frames before acting.",
-    "Pictures of real people, most published without a stated licence: check before you publish a product.",
-)
-"""What a user of a model has to know, whatever it was trained on."""
+THRESHOLDS: Final = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
+"""Least probabilities of a token at which a card tells what is kept and what is wrong."""
+COST_OF_WRONG: Final = 10.0
+"""Refused hands that are as bad as one that is read wrongly: a refused sign is held a moment longer, a wrong one may
+move a vehicle near a person once it has lasted for a whole hold."""
+FEW: Final = 20
+"""Pictures of a class below which a card warns."""
+
+
+def make_card(
+    rows: Sequence[HandRow],
+    originals: Originals,
+    pool: PatchPool,
+    without: Sequence[str],
+    held_out: HeldOut,
+    classes: Sequence[str],
+) -> dict[str, Any]:
+    """What the card of any classifier says of its training, ready for JSON. without: sources left out."""
+    return {
+        "version": __version__,
+        "classes": list(classes),
+        "use": "hands that look like those of the pictures below, in boxes of lightgesture's selector",
+        "limits": limits(rows, held_out, classes),
+        "data": data_section(rows, originals, pool, without),
+        "held_out_sources": held_out_section(rows, held_out, classes),
+        "operating_points": operating_points(held_out, classes),
+    }
+
+
+def limits(rows: Sequence[HandRow], held_out: HeldOut, classes: Sequence[str]) -> list[str]:
+    """What this training could not learn or not tell, a line each."""
+    lines = []
+    pictures = Counter(row.token for row in rows)
+    sources = {name: {row.source for row in rows if row.token == name} for name in pictures}
+    alone = [f"{name} ({min(sources[name])})" for name in classes if len(sources.get(name, ())) == 1]
+    if alone:
+        lines.append(
+            f"classes whose pictures come from one source: {', '.join(alone)}; what was learnt may be "
+            "that person or room, add pictures of others"
+        )
+    few = [f"{name} ({pictures[name]})" for name in classes if 0 < pictures[name] < FEW]
+    if few:
+        lines.append(f"classes of few pictures: {', '.join(few)}; add more")
+    if not rows:
+        lines.append("trained on rendered hands alone: no real hand was seen")
+    if not held_out.original.any():
+        lines.append("no hand was held out, there are too few: nothing here says how well it reads")
+    elif not whole_sources(rows, held_out):
+        lines.append(
+            "no source was held out: the scores are of other pictures of people that it learnt from, and say little of "
+            "others"
+        )
+    if len(held_out.truth) < LEAST_FITTED:
+        lines.append(
+            f"probabilities are not calibrated: {len(held_out.truth)} hands and copies were held out, {LEAST_FITTED} "
+            "are needed"
+        )
+    if NONE not in classes:
+        lines.append(
+            f"there is no class {NONE}: whatever is in a box is read as one of the signs unless the probability is "
+            "low; add a folder of other hands, faces and things"
+        )
+    unstated = sum(row.licence.startswith("none stated") for row in rows)
+    if unstated:
+        lines.append(
+            f"{unstated} of {len(rows)} pictures state no licence: check them before you publish a product"
+        )
+    return lines
+
+
+def whole_sources(rows: Sequence[HandRow], held_out: HeldOut) -> list[str]:
+    """Sources of which the model saw nothing."""
+    every = Counter(row.source for row in rows)
+    kept = Counter(held_out.sources[held_out.original].tolist())
+    return sorted(source for source, count in kept.items() if count >= every[source])
 
 
 def data_section(
-    rows: Sequence[HandRow], originals: Originals, without: Sequence[str], rendered: int
+    rows: Sequence[HandRow], originals: Originals, pool: PatchPool, without: Sequence[str]
 ) -> dict[str, Any]:
-    """Counts of pictures, sources, classes and licences as far as stated, and what stood beside the hands.
-
-    without: sources left out. rendered: number of rendered hands.
-    """
+    """Counts of pictures, sources, classes and licences as far as stated, and what stood beside the hands."""
     return {
         "pictures": len(rows),
         "sources": len({row.source for row in rows}),
         "per_class": dict(sorted(Counter(row.token for row in rows).items())),
+        "sources_per_class": dict(
+            sorted(Counter(token for token, _ in {(row.token, row.source) for row in rows}).items())
+        ),
         "licences": dict(Counter(row.licence for row in rows).most_common()),
         "backgrounds": {
             "pictures": len(originals.backgrounds),
@@ -43,11 +113,12 @@ def data_section(
             "sources": len({scene.source for scene in originals.scenes}),
         },
         "left_out": list(without),
-        "rendered_hands": rendered,
+        "rendered_hands": int(np.char.startswith(pool.sources, f"{RENDERED_SOURCE} ").sum()),
+        "patches": len(pool.tokens),
     }
 
 
-def held_out_section(held_out: HeldOut, classes: Sequence[str]) -> dict[str, Any]:
+def held_out_section(rows: Sequence[HandRow], held_out: HeldOut, classes: Sequence[str]) -> dict[str, Any]:
     """Scores of originals and of altered copies by machines that saw none of their sources.
 
     Accuracy is over tokens alone: the likeliest token, `none` left aside and nothing refused.
@@ -56,6 +127,9 @@ def held_out_section(held_out: HeldOut, classes: Sequence[str]) -> dict[str, Any
     altered = _tokens(held_out, classes) & ~held_out.original
     right = _right(held_out, classes)
     section: dict[str, Any] = {
+        "kept": f"one hand or group of sources in {ONE_IN}, for the temperature and these scores",
+        "whole_sources": len(whole_sources(rows, held_out)),
+        "hands": int(held_out.original.sum()),
         "accuracy": _mean(right[originals]),
         "accuracy_of_altered_copies": _mean(right[altered]),
         "per_class": {
@@ -105,13 +179,6 @@ def _mean(right: NDArray[np.bool_] | NDArray[np.float64]) -> float | None:
     return round(float(right.mean()), 4) if len(right) else None
 
 
-THRESHOLDS = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
-"""Least probabilities of a token at which a card tells what is kept and what is wrong."""
-COST_OF_WRONG = 10.0
-"""Refused hands that are as bad as one that is read wrongly: a refused sign is held a moment longer, a wrong one may
-move a vehicle near a person once it has lasted for a whole hold."""
-
-
 def operating_points(held_out: HeldOut, classes: Sequence[str]) -> list[dict[str, float | None]]:
     """For each threshold: the share of tokens that are read rightly, and of all hands those read as a wrong token.
 
@@ -141,14 +208,23 @@ def operating_points(held_out: HeldOut, classes: Sequence[str]) -> list[dict[str
 
 
 def summary(card: dict[str, Any], out: Path) -> list[str]:
-    """What a user wants to know first, a line each."""
-    scores = card["held_out_sources"]
-    words = [f"{name} {value:.3f}" for name, value in scores["per_class"].items() if value is not None]
+    """What a user wants to know first, a line each: what was learnt, how well it reads, what is wrong with it."""
+    scores, data = card["held_out_sources"], card["data"]
+    counts = [f"{name} {data['per_class'][name]}" for name in card["classes"] if name in data["per_class"]]
+    lines = [
+        f"{data['pictures']} hands of {data['sources']} sources in {card['training']['seconds']} s"
+        f"{': ' if counts else ''}{', '.join(counts)}"
+    ]
+    if scores["accuracy"] is not None:
+        what = f"{scores['whole_sources']} sources" if scores["whole_sources"] else "hands of known sources"
+        words = [f"{name} {value:.3f}" for name, value in scores["per_class"].items() if value is not None]
+        lines += [
+            f"{what} held out, {scores['hands']} hands: {scores['accuracy']} of the tokens right, "
+            f"{scores['accuracy_of_altered_copies']} of the altered copies",
+            "per class: " + ", ".join(words),
+        ]
+    lines += [f"warning: {line}" for line in card["limits"]]
     return [
-        f"{card['data']['pictures']} hands of {card['data']['sources']} sources"
-        f" in {card['training']['seconds']} s",
-        f"sources held out: {scores['accuracy']} of the tokens right, {scores['accuracy_of_altered_copies']} of the"
-        " altered copies",
-        "per class: " + ", ".join(words),
+        *lines,
         f"wrote {out} ({out.stat().st_size / 1e6:.2f} MB) and {out.with_suffix('.json')}",
     ]

@@ -19,8 +19,8 @@ from lightgesture.benchmarks.timing import PEAK_MEMORY, SIZE, WARM_UP, Image, li
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.types import Box, Candidates
+from lightgesture.front_end import StageClock
 from lightgesture.sources import DEFAULT_FPS
-from lightgesture.stage_clock import StageClock
 
 LITERT = "ai_edge_litert"
 """Module of the run-time; without it the nets run by NumPy."""

@@ -14,7 +14,7 @@ from lightgesture.benchmarks.contact_sheet import Image, arranged
 from lightgesture.benchmarks.reading.hands import HandAnswer
 from lightgesture.benchmarks.reading.reliability import calibration_error, reliability_bins
 from lightgesture.benchmarks.scorer import confusion
-from lightgesture.models import CLASSES
+from lightgesture.models import in_order
 from lightgesture.sources import read_picture
 
 TILE_WIDTH, PICTURE_HEIGHT = 160, 150
@@ -104,8 +104,7 @@ def confusion_picture(answers: Mapping[str, Sequence[HandAnswer]]) -> Image:
 
 def _confusion(name: str, answers: Sequence[HandAnswer]) -> Image:
     truth, read = [answer.truth for answer in answers], [answer.best for answer in answers]
-    present = {*truth, *read}
-    names = [one for one in CLASSES if one in present]
+    names = in_order([*truth, *read])
     pairs = confusion(truth, read)
     sums: NDArray[np.int64] = np.array([[pairs[row, column] for column in names] for row in names])
     side = CELL * len(names)

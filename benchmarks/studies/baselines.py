@@ -36,8 +36,7 @@ from lightgesture.features.vector import VectorSettings
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.training.datasets import find_data, read_hands
 from lightgesture.training.model_files import write_svm_model
-from lightgesture.training.pool.patch_kinds import Originals
-from lightgesture.training.svm.descent import DescentSettings
+from lightgesture.training.pool.patch_kinds import MARGIN, PATCH, Originals
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 from lightgesture.training.time_left import tenths
 
@@ -47,16 +46,13 @@ CONTOURS, PAPER = "contours", "paper"
 def contour_settings(centres: int, steps: int) -> SvmSettings:
     """The shipped machine's, without gradients: these are reckoned in the fewest cells, and none is kept."""
     features = VectorSettings(hog=HogSettings(rim=0, cell=16))
-    descent = DescentSettings(steps=steps)
-    return SvmSettings(
-        features=features, directions=0, dimensions=0, contour_weight=1.0, centres=centres, descent=descent
-    )
+    return SvmSettings(features=features, directions=0, centres=centres, steps=steps)
 
 
 def run_contours(args: argparse.Namespace) -> None:
     """Train on the pool, write the model file, score it on `hands/val`."""
     from lightgesture.benchmarks.studies.data import open_study
-    from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
+    from lightgesture.training.pool.pool_samples import pool_samples
 
     training = training_from(args)
     data = find_data(args.data)
@@ -67,7 +63,6 @@ def run_contours(args: argparse.Namespace) -> None:
         np.ones(len(study.pool.tokens), bool),
         np.ones(len(study.hands), bool),
         training.pool,
-        PoolSampling(),
         args.seed,
     )
     settings = contour_settings(args.centres, args.steps)
@@ -89,8 +84,8 @@ def run_paper(args: argparse.Namespace) -> None:
     training = training_from(args)
     data = find_data(args.data)
     study = open_study(data, Path(args.pool), training, say)
-    net = train_paper_net(study.pool, training.pool.margin, study.classes, args.steps, args.seed, say)
-    classifier = PaperNetClassifier(net, study.classes, training.pool.patch)
+    net = train_paper_net(study.pool, MARGIN, study.classes, args.steps, args.seed, say)
+    classifier = PaperNetClassifier(net, study.classes, PATCH)
     say(f"{classifier.weights} weights")
     tables = val_tables(classifier, "paper's network", data)
     print_and_write(

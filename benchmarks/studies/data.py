@@ -11,11 +11,10 @@ from lightgesture.benchmarks.methods import Classifier
 from lightgesture.benchmarks.reading.hands import HandAnswer, classify
 from lightgesture.benchmarks.reading.robustness import SEEN_SETS
 from lightgesture.errors import InputError
-from lightgesture.models import CLASSES
+from lightgesture.models import in_order
 from lightgesture.training.datasets import Label, Sample, read_hands, read_table
 from lightgesture.training.nets.cnn import CnnTraining
-from lightgesture.training.pool.originals import read_originals
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.time_left import tenths
@@ -48,8 +47,7 @@ class Study:
     @property
     def classes(self) -> tuple[str, ...]:
         """Classes of the hands, in their usual order."""
-        present = {hand.token for hand in self.hands}
-        return tuple(name for name in CLASSES if name in present)
+        return in_order(hand.token for hand in self.hands)
 
 
 def training_of(data: Path, **changes: object) -> CnnTraining:
@@ -69,7 +67,11 @@ def open_study(data: Path, folder: Path, training: CnnTraining, progress: Progre
     rows, subjects = _rows_and_subjects(data, training)
     progress(f"reading {len(rows)} hands")
     made = (folder / "patches.json").is_file()
-    originals = Originals([load_hand(row) for row in rows]) if made else read_originals(training, rows)
+    originals = (
+        Originals([load_hand(row) for row in rows])
+        if made
+        else read_originals(rows, training.backgrounds, training.scenes)
+    )
     pool = draw_pool(originals, training.pool, training, folder, progress)
     return Study(data, folder, rows, originals.hands, subjects, pool, read_hands(data))
 

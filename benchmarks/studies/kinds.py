@@ -32,8 +32,7 @@ from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.nets.cnn import CnnTraining
 from lightgesture.training.pool.kept_sources import kept_out
-from lightgesture.training.pool.originals import read_originals
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import rows_without
 
 Change = Callable[[PoolSettings], PoolSettings]
@@ -135,15 +134,12 @@ def _svm_row(
 ) -> dict[str, Cell]:
     """The SVM on the same rows of the pool, and on the hands that they are copies of."""
     from lightgesture.models.svm import SvmClassifier
-    from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
-    from lightgesture.training.svm.descent import DescentSettings
+    from lightgesture.training.pool.pool_samples import pool_samples
     from lightgesture.training.svm.machine import SvmSettings, train_svm
 
     say(f"{name}: training")
-    samples = pool_samples(
-        study.pool, Originals(study.hands), chosen, ~held, training.pool, PoolSampling(), training.seed
-    )
-    settings = SvmSettings(centres=args.svm_centres, descent=DescentSettings(steps=args.svm_steps))
+    samples = pool_samples(study.pool, Originals(study.hands), chosen, ~held, training.pool, training.seed)
+    settings = SvmSettings(centres=args.svm_centres, steps=args.svm_steps)
     model, _ = train_svm(samples, settings, classes=study.classes, seed=training.seed)
     classifier = SvmClassifier(model)
     return {
@@ -186,7 +182,7 @@ def augmentation(study: Study, training: CnnTraining, folder: Path, args: argpar
         settings = POOLS[name](training.pool)
         place = folder / "_".join(name.split())
         if originals is None:
-            originals = read_originals(training, study.rows)
+            originals = read_originals(study.rows, training.backgrounds, training.scenes)
         say(f"{name}: drawing its pool")
         pool = draw_pool(originals, settings, training, place / "pool", say)
         own = replace(study, pool=pool)
@@ -196,7 +192,7 @@ def augmentation(study: Study, training: CnnTraining, folder: Path, args: argpar
 
 def sources(study: Study, training: CnnTraining, folder: Path, args: argparse.Namespace) -> list[Table]:
     """Nets of few and of many sources; each number's sources hold those of the smaller numbers."""
-    held = kept_out(study.hands, training.one_in)
+    held = kept_out(study.hands)
     names = np.unique(study.sources[~held])
     order = np.random.default_rng(training.seed).permutation(len(names))
     counts = [count for count in args.counts or COUNTS if count < len(names)]
@@ -211,7 +207,7 @@ def sources(study: Study, training: CnnTraining, folder: Path, args: argparse.Na
 
 def _on_sources(study: Study, name: str, training: CnnTraining, folder: Path) -> dict[str, Cell]:
     """A row whose held-out hands are those of the shipped net's held-out sources."""
-    held = kept_out(study.hands, training.one_in)
+    held = kept_out(study.hands)
     return fit_row(study, name, rows_without(study.pool, study.sources, held), held, training, folder)
 
 

@@ -28,7 +28,7 @@ class SyntheticTake:
         return Scene(scene_spec(self.scenario)).frames()
 
 
-NO_DIVER = ("command.py", "crops.py", "sheet.py")
+NO_DIVER = ("command.py", "crops.py", "showcase.py")
 """Modules of the renderer that draw single hands and contact sheets, and nothing of a dive."""
 
 

@@ -49,6 +49,9 @@ MAX_TEXT = 1000
 """Longest text in a file, characters."""
 
 
+TOKEN = r"[A-Za-z0-9_]{1,32}"
+"""What the name of a token matches, in a grammar and as a class of a model."""
+
 _LIMITS = Limits()
 _DWELL = DwellSettings()
 
@@ -68,9 +71,7 @@ def _matching(pattern: str, noun: str, remedy: str) -> Callable[[str], str]:
 
 
 Text = Annotated[str, Field(max_length=MAX_TEXT)]
-Token = Annotated[
-    Text, AfterValidator(_matching(r"[A-Za-z0-9_]{1,32}", "token", "use letters, digits and _, at most 32"))
-]
+Token = Annotated[Text, AfterValidator(_matching(TOKEN, "token", "use letters, digits and _, at most 32"))]
 Word = Annotated[
     Text,
     AfterValidator(

@@ -50,6 +50,11 @@ class Mailbox:
         with self._changed:
             return self._is_closed and self._newest is None
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether the last snapshot was taken."""
+        return self._newest is None
+
     def put(self, snapshot: Snapshot) -> None:
         """Leave a snapshot, at once."""
         with self._changed:

@@ -1,6 +1,7 @@
 """Pictures of the stages, for `--debug-dir`."""
 
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from lightgesture.results.atomic import replacing
 
-INTERVAL_S = 1.0
+INTERVAL_S: Final = 1.0
 """Seconds of the source from one saved frame to the next: enough to follow a video, few enough to look at."""
 
 
@@ -18,9 +19,8 @@ class DebugPictures:
     Of a stream these are the first frame and then one a second of the source's own time.
     """
 
-    def __init__(self, folder: Path, interval_s: float = INTERVAL_S) -> None:
+    def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._interval_s = interval_s
         self._due_s: float | None = None
         self.is_selected = False
 
@@ -28,7 +28,7 @@ class DebugPictures:
         """Decide whether the pictures of the frame at `time_s`, about to be processed, are saved."""
         self.is_selected = self._due_s is None or time_s >= self._due_s
         if self.is_selected:
-            self._due_s = time_s + self._interval_s
+            self._due_s = time_s + INTERVAL_S
 
     def start(self, folder: Path) -> None:
         """Save the pictures of the next input, a single picture, in `folder`."""

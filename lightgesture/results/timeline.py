@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 NOT_READ = "not read"
 TOKENS = (NOT_READ, *(token for token in CLASSES if token != NONE))
-"""The rows of the picture, from the bottom; a hand without a token stands in the lowest."""
+"""The first rows of the picture, from the bottom: a hand without a token stands in the lowest, own signs above."""
 
 HEIGHT_IN: Final = 7.0
 """Height of the picture, inches."""
@@ -56,6 +56,7 @@ class Timeline:
     instructions: list[Instruction] = field(default_factory=list)
     rejections: list[Rejected] = field(default_factory=list)
     end_s: float = 0.0
+    rows: list[str] = field(default_factory=lambda: list(TOKENS))
 
     def write(self, record: Record) -> None:
         """Take in a record."""
@@ -65,7 +66,10 @@ class Timeline:
                 for hand in record.hands:
                     times, rows = self.hands[hand.side]
                     times.append(time_s)
-                    rows.append(TOKENS.index(hand.token if hand.token in TOKENS else NOT_READ))
+                    token = hand.token or NOT_READ
+                    if token not in self.rows:
+                        self.rows.append(token)
+                    rows.append(self.rows.index(token))
             case Word():
                 self.words.append(record)
             case Instruction():
@@ -112,8 +116,8 @@ def _draw_signs(axes: "Axes", timeline: Timeline) -> None:
         colour, shift = _HANDS[side]
         heights = [row + shift for row in rows]
         axes.scatter(times, heights, s=9, c=colour, marker="s", linewidths=0, label=f"{side} hand")
-    axes.set_yticks(range(len(TOKENS)), TOKENS)
-    axes.set_ylim(-0.6, len(TOKENS) - 0.4)
+    axes.set_yticks(range(len(timeline.rows)), timeline.rows)
+    axes.set_ylim(-0.6, len(timeline.rows) - 0.4)
     axes.grid(axis="y", color="#e5e5e5")
     axes.set_axisbelow(True)
     axes.set_ylabel("sign")

@@ -4,7 +4,7 @@ import os
 from contextlib import suppress
 from typing import Any, Final
 
-from lightgesture.errors import UsageError
+from lightgesture.errors import UsageError, reason_of
 from lightgesture.fsm import Instruction
 from lightgesture.records import HeartbeatRecord, Record
 from lightgesture.sinks.mavlink_map import MavlinkMap
@@ -61,7 +61,7 @@ class MavlinkSink(Sink):
                 retries=1,
             )
         except Exception as error:  # pyserial and sockets have their own, and pymavlink adds plain ones
-            raise SinkError(f"{self.name}: cannot be opened ({_reason(error)})") from None
+            raise SinkError(f"{self.name}: cannot be opened ({reason_of(error)})") from None
         # By itself the link would only print that it is dead, and go on.
         self._connection.handle_eof = self._connection.handle_disconnect = _fail_closed
         self._packer = self._dialect.MAVLink(self._connection, SOURCE_SYSTEM, SOURCE_COMPONENT)
@@ -75,7 +75,7 @@ class MavlinkSink(Sink):
             else:
                 self._send_heartbeat()
         except OSError as error:
-            raise SinkError(f"{self.name}: broke off ({_reason(error)})") from None
+            raise SinkError(f"{self.name}: broke off ({reason_of(error)})") from None
         if self._connection.portdead:
             raise SinkError(f"{self.name}: broke off (the serial device is gone)")
 
@@ -170,7 +170,3 @@ def _print_nothing(*_words: object, **_options: object) -> None:
 
 def _fail_closed() -> None:
     raise ConnectionError("closed by the other side")
-
-
-def _reason(error: Exception) -> str:
-    return str(getattr(error, "strerror", None) or error or type(error).__name__)

@@ -82,6 +82,11 @@ class Outbox:
         """Whether nobody takes the records any more."""
         return self._is_gone
 
+    @property
+    def waiting(self) -> int:
+        """Records that are queued."""
+        return len(self._queue)
+
     def start(self) -> None:
         """Open the sink and begin to send."""
         self._thread.start()

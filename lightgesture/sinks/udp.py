@@ -5,6 +5,7 @@ import socket
 from contextlib import suppress
 from typing import Any
 
+from lightgesture.errors import reason_of
 from lightgesture.records import Record
 from lightgesture.results import to_json_line
 from lightgesture.sinks.outbox import RecordError, Sink, SinkError
@@ -30,7 +31,7 @@ class UdpSink(Sink):
             self._socket = socket.socket(family, kind, protocol)
             self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
         except (OSError, UnicodeError) as error:
-            raise SinkError(f"{self.name}: cannot be opened ({_reason(error)})") from None
+            raise SinkError(f"{self.name}: cannot be opened ({reason_of(error)})") from None
 
     def send(self, record: Record) -> None:
         """Send one datagram. SinkError: the network is down. RecordError: it is too long."""
@@ -41,7 +42,7 @@ class UdpSink(Sink):
         except OSError as error:
             if error.errno == errno.EMSGSIZE:
                 raise RecordError(f"{self.name}: a record of type {record.type} is too long") from None
-            raise SinkError(f"{self.name}: cannot be reached ({_reason(error)})") from None
+            raise SinkError(f"{self.name}: cannot be reached ({reason_of(error)})") from None
 
     def close(self) -> None:
         """Close the socket."""
@@ -49,7 +50,3 @@ class UdpSink(Sink):
             with suppress(OSError):
                 self._socket.close()
             self._socket = None
-
-
-def _reason(error: Exception) -> str:
-    return str(getattr(error, "strerror", None) or error)

@@ -1,6 +1,7 @@
 """One clock for a bag: the stamps in the headers of its messages, or the times at which they were recorded."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final
 
 from lightgesture.sources.bag_messages import NANOSECONDS
@@ -16,14 +17,14 @@ was set; a simulation may well get on slower, but hardly faster by so much."""
 def has_stamps(stamps_ns: Sequence[int]) -> bool:
     """Whether the headers have a clock, by the stamps of the first messages: most are there and get on."""
     there = [stamp for stamp in stamps_ns if stamp > 0]
-    return 2 * len(there) > len(stamps_ns) and all(a < b for a, b in zip(there, there[1:], strict=False))
+    return 2 * len(there) > len(stamps_ns) and all(a < b for a, b in pairwise(there))
 
 
 class BagClock:
     """Nanoseconds of message after message, never less than before.
 
-    by_header: the clock is that of the headers; where a message has no stamp, or one from a clock that was set, the time
-    goes on by that of the recording.
+    by_header: the clock is that of the headers; where a message has no stamp, or one from a clock that was set, the
+    time goes on by that of the recording.
     """
 
     def __init__(self, by_header: bool) -> None:

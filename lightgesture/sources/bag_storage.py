@@ -1,4 +1,4 @@
-"""What lies in a bag and the messages of one topic, by its index or, where it has none that can be read, from its start."""
+"""What lies in a bag and the messages of one topic: by its index or, where none can be read, from its start."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -24,7 +24,9 @@ _ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 def storage_files(folder: Path) -> list[Path]:
     """The files of a bag that is a folder, in their order."""
     found = [one for one in folder.iterdir() if one.name.lower().endswith(FILE_SUFFIXES) and one.is_file()]
-    return sorted((one for one in found if not one.name.startswith(".")), key=lambda one: natural_key(one.name))
+    return sorted(
+        (one for one in found if not one.name.startswith(".")), key=lambda one: natural_key(one.name)
+    )
 
 
 class Bag:
@@ -84,9 +86,7 @@ class Bag:
             for channel, _, _ in _scan_all(self._files()):
                 self.channels[channel] += 1
         if not self.channels:
-            raise InputError(
-                f"{self._name}: is no bag that can be read ({reason}); copy or record it again"
-            )
+            raise InputError(f"{self._name}: is no bag that can be read ({reason}); copy or record it again")
         self.remark = f"has no index that can be read ({reason}); read from its start"
 
     def _scan(self, topic: str, given: int) -> Iterator[Message]:

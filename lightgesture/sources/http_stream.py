@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Self
 from urllib.parse import unquote, urlsplit, urlunsplit
 
-from lightgesture.errors import InputError, UsageError
+from lightgesture.errors import InputError, UsageError, reason_of
 from lightgesture.sources import types
 from lightgesture.sources.jpeg import JpegSplitter
 from lightgesture.sources.types import LiveSource
@@ -89,4 +89,4 @@ def _reason(error: Exception) -> str:
         error = error.reason
     if isinstance(error, TimeoutError):
         return "timed out"
-    return str(getattr(error, "strerror", None) or error or type(error).__name__)
+    return reason_of(error)

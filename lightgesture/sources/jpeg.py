@@ -36,6 +36,11 @@ class JpegSplitter:
         self._is_begun = self._is_in_scan = False
         self._place = 0
 
+    @property
+    def held(self) -> int:
+        """Bytes that wait for the rest of their picture."""
+        return len(self._buffer)
+
     def feed(self, data: bytes) -> list[bytes]:
         """The files that are whole now, in order."""
         self._buffer += data

@@ -9,15 +9,15 @@ from lightgesture.errors import reason_of
 from lightgesture.features.types import Image
 
 if TYPE_CHECKING:
-    from av.video.codeccontext import VideoCodecContext
     from av.video.frame import VideoFrame
 
 MAX_REORDERED: Final = 16
 """By how many packets a codec may put a frame off: H.264 and H.265 allow no more."""
 
 _CODECS = {
-    **{"264": "h264", "265": "hevc", "hevc": "hevc", "av1": "av1", "vp9": "vp9", "vp8": "vp8"},
-    **{"mpeg4": "mpeg4", "mjpeg": "mjpeg", "ffv1": "ffv1"},
+    "264": "h264",
+    "265": "hevc",
+    **{name: name for name in ("hevc", "av1", "vp9", "vp8", "mpeg4", "mjpeg", "ffv1")},
 }
 """Part of what messages call a codec, which may be that of an encoder, to FFmpeg's name of it."""
 
@@ -38,7 +38,7 @@ class PacketDecoder:
         context = av.CodecContext.create(name, "r")
         assert isinstance(context, VideoCodecContext)
         context.thread_count = 1  # more would keep pictures back
-        self._context: VideoCodecContext = context
+        self._context = context
         self._pending: dict[int, int] = {}
 
     def feed(self, number: int, time_ns: int, data: NDArray[np.uint8]) -> list[tuple[Image, int]]:

@@ -12,6 +12,7 @@ from lightgesture.features.image import BitDepth
 from lightgesture.features.types import Image
 from lightgesture.sources.pictures import decode_picture
 
+
 @dataclass(frozen=True, slots=True)
 class _Layout:
     """Bits and values of a pixel in a row, and what OpenCV makes BGR with (None: BGR, BGRA or grey already)."""
@@ -55,7 +56,7 @@ def message_to_bgr8(message: Any, depth: BitDepth) -> Image:
     depth: of the topic, for "mono16" says how wide a value is stored and not how much of it the camera fills.
     ValueError: its encoding is not known, its data are too short, or it is no picture.
     """
-    if not hasattr(message, "format"):
+    if getattr(message, "format", None) is None:
         return depth.bgr8(_unpack(message))
     image = decode_picture(message.data)
     if image is None:

@@ -3,6 +3,7 @@
 Nothing is queued. A reader that was slow finds the newest when it looks again, so that the writer never waits for one.
 """
 
+import json
 import threading
 import time
 import uuid
@@ -39,6 +40,18 @@ class Update:
     version: int
     state: dict[str, Any]
     entries: list[dict[str, Any]]
+
+    def to_events(self, run: str) -> bytes:
+        """As server-sent events, the state first, for it tells of a new run.
+
+        JSON has no line feed of its own, so hostile text cannot end an event.
+        """
+        parts = [f"event: state\ndata: {json.dumps(self.state)}\n\n"]
+        parts += [
+            f"event: entry\nid: {run}-{entry['number']}\ndata: {json.dumps(entry)}\n\n"
+            for entry in self.entries
+        ]
+        return "".join(parts).encode("ascii")
 
 
 class Board:
@@ -137,6 +150,11 @@ class Board:
             if self._is_closed or self._jpeg_number <= number:
                 return None
             return self._jpeg_number, self._jpeg
+
+    @property
+    def viewers(self) -> int:
+        """How many look on."""
+        return self._viewers
 
     def _count_viewers(self, change: int) -> None:
         with self._changed:

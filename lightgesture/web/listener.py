@@ -55,6 +55,11 @@ class WebListener:
         self.stop()
 
     @property
+    def viewers(self) -> int:
+        """How many browsers look at the picture."""
+        return self._board.viewers
+
+    @property
     def address(self) -> str:
         """Where a browser finds the page, once started."""
         if self._server is None:

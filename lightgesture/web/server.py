@@ -17,7 +17,7 @@ from importlib.resources import files
 from typing import Any, Final, cast
 from urllib.parse import urlsplit
 
-from lightgesture.web.board import Board, Update
+from lightgesture.web.board import Board
 
 PAGES = {
     "/": ("page.html", "text/html; charset=utf-8"),
@@ -169,7 +169,7 @@ class _Handler(BaseHTTPRequestHandler):
                 if update is None:
                     self.wfile.write(b": still here\n\n")
                     continue
-                self.wfile.write(to_events(update, board.run))
+                self.wfile.write(update.to_events(board.run))
                 version = update.version
                 entry = update.entries[-1]["number"] if update.entries else entry
                 time.sleep(1.0 / UPDATES_PER_S)
@@ -214,19 +214,6 @@ def to_part(jpeg: bytes) -> bytes:
     """A picture as a part of the stream; the next boundary follows at once, for it is the end of the part."""
     head = f"Content-Type: image/jpeg\r\nContent-Length: {len(jpeg)}\r\n\r\n"
     return head.encode() + jpeg + f"\r\n--{BOUNDARY}\r\n".encode()
-
-
-def to_events(update: Update, run: str) -> bytes:
-    """An update as server-sent events, the state first, for it tells of a new run.
-
-    JSON has no line feed of its own, so hostile text cannot end an event.
-    """
-    parts = [f"event: state\ndata: {json.dumps(update.state)}\n\n"]
-    parts += [
-        f"event: entry\nid: {run}-{entry['number']}\ndata: {json.dumps(entry)}\n\n"
-        for entry in update.entries
-    ]
-    return "".join(parts).encode("ascii")
 
 
 def known_names(host: str) -> frozenset[str]:

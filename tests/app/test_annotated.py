@@ -11,7 +11,7 @@ from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.fsm import Instruction, Rejected, Word
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.results import open_annotated_video, open_plot
-from lightgesture.results.timeline import NOT_READ, TOKENS
+from lightgesture.results.timeline import NOT_READ, TOKENS, Timeline
 
 
 def frames_of(path):
@@ -151,6 +151,15 @@ def test_timeline_of_everything(tmp_path):
     assert timeline.hands["left"][1] == [TOKENS.index("ok")] * 10
     assert timeline.hands["right"][1] == [TOKENS.index(NOT_READ)] * 10
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_own_signs_have_rows_of_their_own():
+    timeline = Timeline()
+    for number, token in enumerate(("ring", "ok", None, "ring")):
+        hand = Hand(side="left", token=token, confidence=0.9, box=(0, 0, 9, 9), track=1, reason=None)
+        timeline.write(FrameRecord(source="a", frame=number, time_s=number / 10, hands=(hand,)))
+    assert timeline.rows == [*TOKENS, "ring"]
+    assert timeline.hands["left"][1] == [len(TOKENS), TOKENS.index("ok"), 0, len(TOKENS)]
 
 
 def test_timeline_of_nothing(tmp_path):

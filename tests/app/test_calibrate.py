@@ -167,7 +167,7 @@ def test_a_box_outside_the_picture_is_told(run, gloves):
 def test_the_middle_box_is_square_and_central(monkeypatch):
     monkeypatch.setattr(calibration, "MIDDLE", 0.2)
     colour = ColourStage().process(np.zeros((300, 560, 3), np.uint8))
-    placer = calibration._Placer("middle", "a")
+    placer = calibration.PlacedHands("middle", "a")
     assert placer.boxes(colour) == [(250, 120, 60, 60)]
 
 
@@ -176,7 +176,7 @@ def test_pictures_are_taken_evenly_and_the_source_is_left_after_the_seconds(monk
     monkeypatch.setattr(calibration, "PICTURES", 10)
     images = [np.full((12, 16, 3), index, np.uint8) for index in range(frames)]
     stream = Stream(images, step_s=0.1)
-    taken, broke_off = calibration._look(stream, 4.95)
+    taken, broke_off = calibration.look_at(stream, 4.95)
     assert broke_off is None
     in_time = min(frames, 50)
     assert stream.given == min(frames, 51)
@@ -199,7 +199,7 @@ def test_a_source_that_breaks_off_serves_if_enough_was_seen():
 
 def test_pictures_of_both_hands_go_before_those_of_one(monkeypatch):
     counts = iter([1, 2, 2, 1, 2, 2, 0])
-    monkeypatch.setattr(calibration._Finder, "boxes", lambda self, colour: list(BOXES[: next(counts)]))
+    monkeypatch.setattr(calibration.FoundHands, "boxes", lambda self, colour: list(BOXES[: next(counts)]))
     shown = show_hands(Stream([_gloves(seed) for seed in range(7)]), None, 5.0)
     assert (shown.hands, len(shown.images), shown.looked_at) == (2, 4, 7)
     counts = iter([1, 2, 1, 0, 1])

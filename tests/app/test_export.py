@@ -12,7 +12,7 @@ from lightgesture.export import files as flat
 from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, Weights
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
-from lightgesture.fsm.load import BUNDLED
+from lightgesture.fsm.language.load import BUNDLED
 from lightgesture.models.cnn import CnnModel
 from lightgesture.training.model_files import write_cnn_model
 

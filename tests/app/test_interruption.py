@@ -46,9 +46,8 @@ def test_a_second_signal_does_not_break_off_the_clean_up():
     assert cleaned == [True]
 
 
-def test_every_command_takes_it(monkeypatch, capsys):
-    monkeypatch.setattr(cli, "_run", lambda argv: terminate())
-    assert cli.main([]) == ExitStatus.INTERRUPTED
+def test_every_command_takes_it(capsys):
+    assert cli.exit_status(terminate, "all is kept") == ExitStatus.INTERRUPTED
     assert "interrupted" in capsys.readouterr().err
 
 

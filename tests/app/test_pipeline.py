@@ -10,7 +10,7 @@ from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.settings import LEARNED
 from lightgesture.features.types import Candidates, HandRegion
-from lightgesture.front_end import FrontEnd
+from lightgesture.front_end import KEPT_TIMES, FrontEnd, StageClock
 from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.pictures import draw_regions
@@ -18,7 +18,6 @@ from lightgesture.hands.reading import clearest, is_crowded, read_token
 from lightgesture.models import load_classifier
 from lightgesture.records import FrameRecord, SummaryRecord
 from lightgesture.sources import open_source
-from lightgesture.stage_clock import KEPT_TIMES, StageClock
 
 CLASSES = ("0", "5", "none")
 

@@ -17,7 +17,7 @@ from lightgesture.benchmarks.timing import (
     limited_threads,
     time_calls,
 )
-from lightgesture.stage_clock import StageClock
+from lightgesture.front_end import StageClock
 
 ROUNDS = 2
 

@@ -73,7 +73,7 @@ def drawn(tmp_path):
 
 @pytest.fixture
 def training(drawn):
-    return training_of(drawn, pool=PoolSettings(copies=1, rounds=1, rendered=0), one_in=2)
+    return training_of(drawn, pool=PoolSettings(copies=1, rounds=1, rendered=0))
 
 
 def small_pool():
@@ -134,7 +134,7 @@ def test_pools_differ_in_what_their_name_says():
     nothing = made[NOTHING]
     assert (nothing.rendered, nothing.mild_copies) == (0, 0)
     assert (nothing.augment.rotation, nothing.augment.light.blur) == (0.0, 0.0)
-    assert (nothing.copies, nothing.patch) == (pool.copies, pool.patch)
+    assert nothing.copies == pool.copies
 
 
 def test_mean_and_worst_of_folds():

@@ -13,7 +13,7 @@ from lightgesture.training.pictures.augment import (
     shifted_box,
 )
 from lightgesture.training.pictures.light import LightSettings, path_before_hand, relight
-from lightgesture.training.pool.negatives import NegativeSettings, Scene, missed_hand, negatives
+from lightgesture.training.pool.negatives import Scene, missed_hand, negatives
 from lightgesture.training.pool.samples import LabelledHand, landmark_box
 
 STILL = LightSettings(gamma=0, contrast=0, gain=0, gradient=0, dark=0, backlit=0, water=0, blur=0, noise=0)
@@ -117,8 +117,7 @@ def test_negatives_lie_on_no_hand() -> None:
     scene = Scene(
         thumb_left().image.repeat(3, axis=0).repeat(3, axis=1), ((40, 80, 150, 110),), ((0, 0, 30, 30),), "s"
     )
-    settings = NegativeSettings(random_boxes=50)
-    samples = list(negatives([scene], settings, random))
+    samples = list(negatives([scene] * 8, random))
     assert len(samples) > 20
     assert samples[0].box == (0, 0, 30, 30)
     for sample in samples:
@@ -132,6 +131,6 @@ def test_negatives_lie_on_no_hand() -> None:
 def test_a_missed_hand_overlaps_it_little() -> None:
     random = np.random.default_rng(0)
     hand = thumb_left()
-    found = [missed_hand(hand, NegativeSettings(), random) for _ in range(200)]
+    found = [missed_hand(hand, random) for _ in range(200)]
     assert any(sample is not None for sample in found)
     assert any(sample is None for sample in found)

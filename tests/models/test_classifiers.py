@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lightgesture.models import CLASSES, ModelError, load_classifier
+from lightgesture.models import CLASSES, ModelError, check_classes, in_order, load_classifier
 from lightgesture.models.loading import DEFAULT, SHIPPED, Classifier
 
 Draw = Callable[[str, int], np.ndarray]
@@ -81,6 +81,33 @@ def test_without_a_name_it_is_the_default(draw: Draw) -> None:
     arguments = draw("5", 0), [(5, 5, 50, 50)], ["left"]
     expected = load_classifier(DEFAULT).probabilities(*arguments)
     np.testing.assert_array_equal(load_classifier().probabilities(*arguments), expected)
+
+
+@pytest.mark.parametrize("classes", [CLASSES, CLASSES[:-1]])
+def test_a_model_and_a_grammar_of_the_same_tokens_agree(classes: tuple[str, ...]) -> None:
+    assert check_classes(classes, CLASSES[:-1]) is None
+
+
+def test_classes_that_the_grammar_does_not_know_are_told() -> None:
+    warning = check_classes((*CLASSES, "shaka", "wave"), CLASSES[:-1])
+    assert warning is not None
+    assert warning.startswith("classes of the model that the grammar does not know: shaka, wave; ")
+    assert check_classes(CLASSES, ("0", "1", "ok")) is not None
+
+
+def test_tokens_that_the_model_cannot_read_are_refused() -> None:
+    with pytest.raises(
+        ModelError, match="tokens of the grammar that the model cannot read: wave, shaka; take"
+    ):
+        check_classes(CLASSES, ("wave", "ok", "shaka"))
+    with pytest.raises(ModelError, match="cannot read: none"):
+        check_classes(CLASSES, CLASSES)
+
+
+def test_names_come_in_the_order_of_the_language_and_own_ones_by_name() -> None:
+    assert in_order(["none", "wave", "ok", "0", "Up", "ok"]) == ("0", "ok", "Up", "wave", "none")
+    assert in_order(CLASSES) == CLASSES
+    assert in_order([]) == ()
 
 
 def test_a_missing_file_is_refused(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from sklearn.metrics.pairwise import rbf_kernel
 
-from lightgesture.training.svm.descent import DescentSettings, Machine, descend, hinge_gradients
+from lightgesture.training.svm.descent import Machine, descend, hinge_gradients
 
 
 @pytest.fixture
@@ -51,8 +51,7 @@ def circles(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 def test_it_learns_where_to_look_and_where_to_put_few_vectors(machine: Machine) -> None:
     samples, truth = circles(4000)
-    settings = DescentSettings(steps=1500, batch=64, dropped=0.0)
-    learnt = descend(machine, samples, truth, np.ones(4000, np.float32), settings, 0, lambda *_: None)
+    learnt = descend(machine, samples, truth, np.ones(4000, np.float32), 1500, 0, lambda *_: None)
     fresh, expected = circles(1000)
     points = fresh.astype(np.float32) @ learnt.projection
     scores = rbf_kernel(points, learnt.centres, gamma=1.0) @ learnt.weights + learnt.bias
@@ -67,10 +66,7 @@ def test_what_weighs_nothing_is_never_seen(machine: Machine) -> None:
     weights = np.ones(400, np.float32)
     weights[::3] = 0.0
     spoilt[::3] = np.nan
-    settings = DescentSettings(steps=20, batch=32)
-    learnt = [
-        descend(machine, own, truth, weights, settings, 0, lambda *_: None) for own in (samples, spoilt)
-    ]
+    learnt = [descend(machine, own, truth, weights, 20, 0, lambda *_: None) for own in (samples, spoilt)]
     for part, other in zip(learnt[0].parts, learnt[1].parts, strict=True):
         assert np.isfinite(other).all()
         assert np.array_equal(part, other)
@@ -79,5 +75,5 @@ def test_what_weighs_nothing_is_never_seen(machine: Machine) -> None:
 def test_without_steps_it_stays_as_it_starts(machine: Machine) -> None:
     samples, truth = circles(40)
     weights = np.ones(40, np.float32)
-    same = descend(machine, samples, truth, weights, DescentSettings(steps=0), 0, lambda *_: None)
+    same = descend(machine, samples, truth, weights, 0, 0, lambda *_: None)
     assert all(np.array_equal(*parts) for parts in zip(machine.parts, same.parts, strict=True))

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.errors import InputError
+from lightgesture.errors import InputError, UsageError
 from lightgesture.training.pool.samples import landmark_box, load_hand, read_rows
 
 HEADER = "path,token,set,hx0,hy0,hx1,hy1,lm,side,licence\n"
@@ -51,15 +51,12 @@ def test_folders_name_the_classes(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        (("a.png,7,,,,,,,,", "b.png,1,,,,,,,,"), "line 2: token '7' is no class"),
         (("a.png,1,,,,,,,,", "c.png,2,,,,,,,,"), "1 of 2 pictures are missing, first .*c.png"),
-        (("a.png,1,,,,,,,,", "b.png,1,,,,,,,,"), "at least two classes"),
         (("a.png,1,,10,20,30,x,,,", "b.png,2,,,,,,,,"), "line 2: column hx0"),
         (("a.png,1,,30,20,10,40,,,", "b.png,2,,,,,,,,"), "line 2: the box has no area"),
         (("a.png,1,,10,20,30,nan,,,", "b.png,2,,,,,,,,"), "finite"),
         (("a.png,1,,,,,,1;2;3,,", "b.png,2,,,,,,,,"), "column lm needs 42"),
         (("a.png,1,,,,,,,upper,", "b.png,2,,,,,,,,"), "side 'upper'"),
-        ((), "no class"),
     ],
 )
 def test_wrong_rows_are_refused(tmp_path: Path, rows: tuple[str, ...], words: str) -> None:
@@ -74,9 +71,43 @@ def test_other_tables_and_folders_are_refused(tmp_path: Path) -> None:
         read_rows(tmp_path / "missing.csv")
     with pytest.raises(InputError, match=r"cannot be read"):
         read_rows(tmp_path / "a.png")
-    (tmp_path / "folders" / "thumb").mkdir(parents=True)
-    with pytest.raises(InputError, match="'thumb' is no class"):
-        read_rows(tmp_path / "folders")
+
+
+@pytest.mark.parametrize("name", ["thumb up", "Größe", "up-down", "a" * 33, ""])
+def test_a_class_that_no_grammar_could_name_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(UsageError, match=r"line 3: .* cannot be a token of a grammar; name the token"):
+        read_rows(manifest(tmp_path, "a.png,1,,,,,,,,", f"b.png,{name},,,,,,,,"))
+    if name:
+        (tmp_path / "signs" / name).mkdir(parents=True)
+        with pytest.raises(UsageError, match=r"signs: .* cannot be a token of a grammar; name the folder"):
+            read_rows(tmp_path / "signs")
+
+
+@pytest.mark.parametrize(
+    ("tokens", "words"), [(("up", "up"), "holds the class 'up' alone"), ((), "holds no class")]
+)
+def test_fewer_than_two_classes_are_refused(tmp_path: Path, tokens: tuple[str, ...], words: str) -> None:
+    rows = [f"a.png,{token},anna,,,,,,," for token in tokens]
+    with pytest.raises(UsageError, match=words):
+        read_rows(manifest(tmp_path, *rows))
+    with pytest.raises(UsageError, match="holds no class"):
+        read_rows(manifest(tmp_path, *rows), without=["anna"])
+
+
+def test_hidden_folders_are_no_classes_and_empty_ones_are_refused(folder: Path) -> None:
+    (folder / ".thumbnails").mkdir()
+    assert {row.token for row in read_rows(folder)} == {"1", "5", "none"}
+    (folder / "wave").mkdir()
+    with pytest.raises(UsageError, match="wave: holds no pictures"):
+        read_rows(folder)
+
+
+def test_folders_in_a_class_are_sources_and_can_be_left_out(tmp_path: Path) -> None:
+    for number, place in enumerate(("up/anna", "up/ben", "down/anna", "down/ben")):
+        (tmp_path / "signs" / place).mkdir(parents=True)
+        assert cv2.imwrite(str(tmp_path / "signs" / place / "1.png"), np.full((9, 9, 3), number, np.uint8))
+    rows = read_rows(tmp_path / "signs", without=["signs/ben"])
+    assert [(row.token, row.source) for row in rows] == [("down", "signs/anna"), ("up", "signs/anna")]
 
 
 def test_pictures_that_are_none_and_boxes_outside_are_refused(tmp_path: Path) -> None:

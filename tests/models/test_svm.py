@@ -13,7 +13,8 @@ from lightgesture.features.vector import block_lengths, feature_vectors
 from lightgesture.models import TrainingSample, load_classifier
 from lightgesture.models.svm import SvmClassifier, radial_kernel, softmax
 from lightgesture.models.svm_file import SvmModel
-from lightgesture.training.svm.machine import SvmSettings, assign_folds, sample_weights, train_svm
+from lightgesture.training.pool.kept_sources import kept_samples
+from lightgesture.training.svm.machine import RIDGE, SvmSettings, sample_weights, train_svm
 
 Draw = Callable[[str, int], np.ndarray]
 
@@ -46,10 +47,10 @@ def test_scores_are_those_of_scikit_learns_svc(samples: list[TrainingSample], qu
 def test_training_is_ridge_regression_on_the_nystroem_features_of_scikit_learn(
     samples: list[TrainingSample], quick: SvmSettings
 ) -> None:
-    descent = replace(quick.descent, steps=0)
-    settings = replace(quick, centres=len(samples), one_in=2, descent=descent)
+    settings = replace(quick, centres=len(samples), steps=0)
     model, _ = train_svm(samples, settings, classes=("1", "5", "none"))
-    kept = assign_folds(np.array([sample.source for sample in samples]), 2) == 1
+    truth, sources = np.array([s.token for s in samples]), np.array([s.source for s in samples])
+    kept = kept_samples(truth, sources, np.full(len(samples), -1))
     samples = [sample for sample, own in zip(samples, kept, strict=True) if not own]
     patches = np.stack([cut_patch(s.image, s.box, s.side, quick.features.patch) for s in samples])
     vectors = feature_vectors(patches, quick.features)
@@ -59,9 +60,7 @@ def test_training_is_ridge_regression_on_the_nystroem_features_of_scikit_learn(
     # All samples as components: Nystroem then needs no random choice to agree with ours.
     features = Nystroem(kernel="rbf", gamma=model.gamma, n_components=len(points)).fit_transform(points)
     targets = np.where(truth[:, None] == np.arange(3), 1.0, -1.0)
-    reference = Ridge(alpha=settings.ridge * float(weights.sum())).fit(
-        features, targets, sample_weight=weights
-    )
+    reference = Ridge(alpha=RIDGE * float(weights.sum())).fit(features, targets, sample_weight=weights)
     np.testing.assert_allclose(SvmClassifier(model).scores(vectors), reference.predict(features), atol=5e-3)
 
 

@@ -18,6 +18,19 @@ def train(folder: Path, out: Path, *more: str) -> int:
     return main(["train", "cnn", "--data", str(folder), "--out", str(out), *QUICK, *more])
 
 
+def test_a_short_training_writes_a_net_of_the_classes_of_its_folders(folder: Path, tmp_path: Path) -> None:
+    (folder / "5").rename(folder / "disc")
+    more = ("--copies", "1", "--steps", "8", "--teachers", "0", "--quiet")
+    assert train(folder, tmp_path / "mine.npz", *more) == 0
+    assert load_classifier(tmp_path / "mine.npz").classes == ("1", "disc", "none")
+    card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
+    assert card["data"]["per_class"] == {"1": 12, "disc": 12, "none": 12}
+    assert card["limits"][0].startswith(
+        "classes whose pictures come from one source: 1 (hands), disc (hands)"
+    )
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("more", [(), ("--outline", "--teachers", "0")], ids=["taught", "outline"])
 def test_folders_become_a_model_and_its_card(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], more: tuple[str, ...]
@@ -42,6 +55,7 @@ def test_folders_become_a_model_and_its_card(
     assert "wrote" in captured.err
 
 
+@pytest.mark.slow
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
     for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
         more = ("--seed", seed, "--quiet", "--teachers", "0")
@@ -54,6 +68,7 @@ def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> Non
     assert any((arrays["a"][key] != arrays["c"][key]).any() for key in arrays["a"] if key.endswith("tflite"))
 
 
+@pytest.mark.slow
 def test_teachers_that_learn_at_a_time_change_nothing(folder: Path, tmp_path: Path) -> None:
     for jobs in ("1", "2"):
         assert train(folder, tmp_path / f"{jobs}.npz", "--quiet", "--teachers", "2", "--jobs", jobs) == 0
@@ -64,6 +79,7 @@ def test_teachers_that_learn_at_a_time_change_nothing(folder: Path, tmp_path: Pa
     assert answers.shape[1] == 3
 
 
+@pytest.mark.slow
 def test_answers_about_other_patches_are_refused(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

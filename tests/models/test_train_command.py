@@ -5,11 +5,8 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.features.patch import PatchSettings
 from lightgesture.models import load_classifier
 from lightgesture.sources import read_picture
-from lightgesture.training.pool.patch_kinds import PoolSettings
-from lightgesture.training.svm.train import SvmTraining
 
 
 def train(folder: Path, out: Path, *more: str) -> int:
@@ -26,7 +23,7 @@ def train(folder: Path, out: Path, *more: str) -> int:
             "--centres",
             "50",
             "--steps",
-            "50",
+            "10",
             *more,
         ]
     )
@@ -56,17 +53,13 @@ def test_folders_become_a_model_and_its_card(
 def test_steps_are_told_as_lines(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert train(folder, tmp_path / "mine.npz") == 0
     told = capsys.readouterr().err.splitlines()
-    assert "lightgesture: learn the machine: 50 of 50, done" in told
+    assert "lightgesture: learn the machine: 10 of 10, done" in told
     assert len([line for line in told if "learn the machine" in line]) == 10
     assert train(folder, tmp_path / "quiet.npz", "--quiet") == 0
     assert capsys.readouterr().err == ""
 
 
-def test_the_machine_and_the_pool_have_one_patch(folder: Path) -> None:
-    with pytest.raises(ValueError, match="give both the same"):
-        SvmTraining(folder, pool=PoolSettings(patch=PatchSettings(24, 1.1)))
-
-
+@pytest.mark.slow
 def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> None:
     for name, seed in (("a", "3"), ("b", "3"), ("c", "4")):
         assert train(folder, tmp_path / f"{name}.npz", "--seed", seed, "--quiet") == 0
@@ -75,6 +68,7 @@ def test_the_same_seed_writes_the_same_file(folder: Path, tmp_path: Path) -> Non
     assert content["a"] != content["c"]
 
 
+@pytest.mark.slow
 def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> None:
     scene = folder / "5" / "0.png"
     (tmp_path / "scenes.csv").write_text(
@@ -89,7 +83,7 @@ def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> Non
     assert card["data"]["backgrounds"] == {"pictures": 12, "sources": ["background none"]}
     assert card["data"]["scenes"] == {"pictures": 1, "sources": 1}
     # Beside the rows of the same pictures without them.
-    assert card["training"]["rows"] > alone["training"]["rows"]
+    assert card["data"]["patches"] > alone["data"]["patches"]
 
 
 @pytest.mark.parametrize(
@@ -101,6 +95,8 @@ def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> Non
         (["--data", "{folder}", "--out", "model.pickle"], 2, "ends in .npz"),
         (["--data", "{folder}", "--out", "nowhere/model.npz"], 2, "nowhere: no such folder"),
         (["--data", "{folder}", "--seed", "-1"], 2, "--seed"),
+        (["--data", "{folder}/5"], 2, "holds no class; a classifier needs pictures of at least two classes"),
+        (["--data", "{folder}", "--without", "hands"], 2, "holds no class"),
         ([], 2, "--data"),
     ],
 )
@@ -131,6 +127,23 @@ def test_a_picture_that_cannot_be_decoded_stops_the_training(folder: Path, tmp_p
     (folder / "1" / "broken.png").write_bytes(np.arange(50, dtype=np.uint8).tobytes())
     assert train(folder, tmp_path / "mine.npz") == 1
     assert not (tmp_path / "mine.npz").exists()
+
+
+@pytest.mark.parametrize("name", ["thumb up", "Größe"])
+def test_a_class_that_no_grammar_could_name_is_refused_before_anything_is_drawn(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str
+) -> None:
+    (folder / "5").rename(folder / name)
+    before = set(tmp_path.rglob("*"))
+    for model in ("svm", "cnn"):
+        if model == "cnn":
+            pytest.importorskip("torch")
+        out = str(tmp_path / "mine.npz")
+        assert main(["train", model, "--data", str(folder), "--out", out]) == 2
+        told = capsys.readouterr().err
+        assert told.count("\n") == 1
+        assert f"'{name}' cannot be a token of a grammar; name the folder" in told
+    assert set(tmp_path.rglob("*")) == before
 
 
 @pytest.mark.parametrize("out", ["selector.bin", "no/such/folder/selector.npz"])

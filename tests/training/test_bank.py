@@ -38,7 +38,7 @@ def test_no_left_out_source_is_read_and_each_hand_is_of_another_source(data, mon
         seen.append((row["token"], row["set"]))
         return np.array([[0, 0], [9, 0], [9, 9]], np.int32)
 
-    monkeypatch.setattr(training, "_cut_out_outline", read)
+    monkeypatch.setattr(training, "cut_out_outline", read)
     monkeypatch.setattr(training, "HANDS", 10)
     without = LeftOut(fold=2)
     outlines = hand_outlines(data, np.random.default_rng(0), without)

@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from lightgesture.features.outline.contours import ContourSettings, contour_length, contour_vectors
-from lightgesture.features.patch import PatchSettings
 from lightgesture.models.cnn import CnnClassifier
 from lightgesture.training.nets.cnn import CnnTraining, in_integers
 from lightgesture.training.nets.hand_samples import HandSamples
-from lightgesture.training.pool.patch_kinds import PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool
 
 pytest.importorskip("torch")
@@ -38,8 +36,7 @@ def test_integers_answer_as_floating_point_does(looks_at_the_outline):
     length = contour_length(CONTOUR) if looks_at_the_outline else 0
     scale = OutlineScale(contours[:, :length].mean(axis=0), contours[:, :length].std(axis=0) + 1e-3)
     learnt = LearntNet(make_net(hand_nodes(3, length, "small"), SIZE, length, 0).eval(), samples, scale)
-    pool_settings = PoolSettings(patch=PatchSettings(SIZE, 1.1), contour=CONTOUR)
-    training = CnnTraining("unused", contours=looks_at_the_outline, steps=1, pool=pool_settings)
+    training = CnnTraining("unused", contours=looks_at_the_outline, steps=1)
 
     seen = np.ascontiguousarray(patches[:, 2:-2, 2:-2])
     floats = learnt.scores(seen, CONTOUR)

@@ -5,8 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.training.pool.kept_sources import keeps_whole_sources, kept_out
+from lightgesture.training.pool.kept_sources import kept_out
 from lightgesture.training.pool.samples import LabelledHand
+
+
+def keeps_whole_sources(hands, kept):
+    sources = np.array([hand.source for hand in hands])
+    return not np.isin(sources[kept], sources[~kept]).any()
+
 
 PICTURE = np.zeros((4, 4, 3), np.uint8)
 
@@ -58,3 +64,11 @@ def test_who_alone_shows_a_class_is_never_kept():
         kept = kept_out(hands, 10)
         assert kept.any()
         assert "ok" in {hand.token for hand, is_kept in zip(hands, kept, strict=True) if not is_kept}
+
+
+def test_the_only_hand_of_a_class_is_learnt():
+    hands = [
+        replace(hand, token=token)
+        for hand, token in zip(hands_of({"one": 3}), ("up", "down", "down"), strict=True)
+    ]
+    assert not kept_out(hands, 12).any()

@@ -7,7 +7,7 @@ from lightgesture.features.net.network import Node
 
 torch = pytest.importorskip("torch")
 
-SETTINGS = {"steps": 6, "rate": 0.05, "warm_up": 2, "save_every": 2}
+SETTINGS = {"steps": 6, "rate": 0.05, "warm_up": 2}
 
 
 def a_net():
@@ -47,7 +47,8 @@ def same(one, other):
 
 
 @pytest.mark.parametrize("matrix_rate", [0.0, 0.05])
-def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path, matrix_rate):
+def test_an_interrupted_training_gives_what_a_whole_one_gives(tmp_path, matrix_rate, monkeypatch):
+    monkeypatch.setattr("lightgesture.training.nets.net_training.SAVE_EVERY", 2)
     drawn = []
 
     def interrupted(rng):

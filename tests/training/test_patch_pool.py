@@ -5,17 +5,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.features.patch import PatchSettings, cut_patch
+from lightgesture.features.patch import cut_patch
 from lightgesture.features.standardise import channel_tables
 from lightgesture.synth import crops
 from lightgesture.training.nets import hand_samples
 from lightgesture.training.nets.hand_samples import HandSamples, standardised
 from lightgesture.training.pool.negatives import Scene
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import (
+    HIDDEN,
+    KEPT,
+    KINDS,
+    MARGIN,
+    Originals,
+    PoolSettings,
+)
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import LabelledHand
 
-SETTINGS = PoolSettings(copies=2, rounds=1, rendered=6, patch=PatchSettings(16, 1.1))
+SETTINGS = PoolSettings(copies=2, rounds=1, rendered=0)
 
 
 @pytest.fixture(autouse=True)
@@ -37,8 +44,8 @@ def originals():
 
 
 def test_the_pool_holds_copies_regions_and_rendered_hands(originals, tmp_path):
-    pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
-    assert pool.patches.shape[1:] == (20, 20, 3)
+    pool = make_pool(originals, replace(SETTINGS, rendered=6), 0, 1, tmp_path, lambda *_: None)
+    assert pool.patches.shape[1:] == (36, 36, 3)
     assert len(pool.patches) == len(pool.contours) == len(pool.tokens) == len(pool.sources) == len(pool.hands)
     assert (np.bincount(pool.hands[pool.hands >= 0]) == SETTINGS.copies + SETTINGS.mild_copies).all()
     for row, number in enumerate(pool.hands):
@@ -60,10 +67,9 @@ def assert_same(one, other):
 
 
 def test_reruns_change_nothing_and_another_seed_does(originals, tmp_path):
-    settings = replace(SETTINGS, rendered=0)
-    first = make_pool(originals, settings, 3, 1, tmp_path / "a", lambda *_: None)
-    assert_same(first, make_pool(originals, settings, 3, 1, tmp_path / "a", pytest.fail))
-    other = make_pool(originals, settings, 4, 1, tmp_path / "c", lambda *_: None)
+    first = make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", lambda *_: None)
+    assert_same(first, make_pool(originals, SETTINGS, 3, 1, tmp_path / "a", pytest.fail))
+    other = make_pool(originals, SETTINGS, 4, 1, tmp_path / "c", lambda *_: None)
     assert len(other.patches) != len(first.patches) or (other.patches != first.patches).any()
 
 
@@ -72,7 +78,8 @@ def test_processes_change_nothing(originals, tmp_path, monkeypatch):
     # Other processes draw all surroundings.
     monkeypatch.undo()
     pools = [
-        make_pool(originals, SETTINGS, 3, jobs, tmp_path / f"{jobs}", lambda *_: None) for jobs in (1, 2)
+        make_pool(originals, replace(SETTINGS, rendered=6), 3, jobs, tmp_path / f"{jobs}", lambda *_: None)
+        for jobs in (1, 2)
     ]
     assert_same(*pools)
 
@@ -88,9 +95,9 @@ def test_many_patches_are_standardised_as_the_board_does_one():
 def test_only_the_chosen_rows_are_drawn_and_no_source_rules(originals, tmp_path):
     pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
     chosen = pool.tokens == "5"
-    samples = HandSamples(pool, chosen, ("5",), SETTINGS.margin)
+    samples = HandSamples(pool, chosen, ("5",), MARGIN)
     batch = samples.draw(np.random.default_rng(1), 300)
-    assert batch.patches.shape == (300, 16, 16, 3)
+    assert batch.patches.shape == (300, 32, 32, 3)
     assert np.abs(batch.patches).max() <= 4.5
     assert set(batch.truth.tolist()) == {0}
     same = samples.draw(np.random.default_rng(1), 300)
@@ -126,15 +133,35 @@ def test_nothing_of_what_is_held_out_is_trained_on(sources, held, expected):
     assert rows_without(pool, np.array(sources), np.array(held)).tolist() == expected
 
 
-def test_some_hands_are_hidden_and_called_none(originals, tmp_path):
-    def called_none(hidden):
-        settings = replace(SETTINGS, hidden=hidden)
-        pool = make_pool(originals, settings, 0, 1, tmp_path / str(hidden), lambda *_: None)
-        assert (pool.tokens[pool.hands < 0][:1] == "none").all()
-        people = np.char.startswith(pool.sources, "person")
-        return int((people & (pool.hands < 0)).sum())
+def test_some_hands_are_hidden_and_called_none(originals):
+    many = Originals(list(originals.hands) * 10)
+    hidden = list(KINDS["hidden"](many, SETTINGS, 0, len(many.hands), np.random.default_rng(0)))
+    assert {sample.token for sample in hidden} == {"none"}
+    assert not any(sample.original for sample in hidden)
+    assert 0.8 * HIDDEN < len(hidden) / len(many.hands) < 1.2 * HIDDEN
 
-    assert called_none(1.0) == called_none(0.0) + len(originals.hands)
+
+def test_own_signs_have_no_rendered_hands_and_no_rendered_none(originals):
+    hands = originals.hands
+    assert originals.rendered_classes == {"left", "right", "5", "none"}
+    assert Originals([*hands, replace(hands[0], token="shaka")]).rendered_classes == {"left", "right", "5"}
+    assert not Originals([replace(hands[0], token="shaka")]).rendered_classes
+    assert len(Originals([]).rendered_classes) == 11
+
+
+def test_copies_of_own_signs_keep_their_name(originals):
+    """Mirrored, `left` and `right` are each other where both are there; every other sign keeps its name."""
+
+    def tokens(*names):
+        hands = [replace(originals.hands[0], token=name) for name in names]
+        drawn = KINDS["hands"](Originals(hands * 8), SETTINGS, 0, 8 * len(names), np.random.default_rng(0))
+        return [sample.token for sample in drawn]
+
+    assert tokens("shaka", "Left") == ["shaka", "Left"] * 8
+    assert tokens("left", "shaka") == ["left", "shaka"] * 8
+    both = tokens("left", "right")
+    assert both != ["left", "right"] * 8
+    assert set(both) == {"left", "right"}
 
 
 def test_mild_copies_stay_near_their_hand(originals, tmp_path):
@@ -146,10 +173,10 @@ def test_mild_copies_stay_near_their_hand(originals, tmp_path):
         folder = tmp_path / str(settings.mild_share)
         pool = make_pool(Originals(hands), settings, 0, 1, folder, lambda *_: None)
         last = pool.patches[pool.hands >= 0][-len(hands) :]
-        plain = cut_patch(image, hands[0].box, "left", settings.kept)
+        plain = cut_patch(image, hands[0].box, "left", KEPT)
         return np.abs(last.astype(int) - plain).mean()
 
-    none = replace(SETTINGS, mild_share=0.0, rendered=0)
+    none = replace(SETTINGS, mild_share=0.0)
     assert mean_distance(replace(none, mild_share=0.5)) < 0.5 * mean_distance(none)
 
 
@@ -157,7 +184,7 @@ def test_answers_of_other_nets_stay_with_their_patches(originals, tmp_path, monk
     pool = make_pool(originals, SETTINGS, 0, 1, tmp_path, lambda *_: None)
     chosen = pool.tokens == "5"
     monkeypatch.setattr(hand_samples, "ERASED_SHARE", 0.0)
-    samples = HandSamples(pool, chosen, ("5",), SETTINGS.margin)
+    samples = HandSamples(pool, chosen, ("5",), MARGIN)
     assert samples.draw(np.random.default_rng(1), 3).answers is None
     middles = samples.middles(0, len(samples))
     told = samples.with_answers(np.arange(len(samples), dtype=np.float16)[:, None])

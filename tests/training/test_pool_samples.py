@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,10 @@ from lightgesture.synth import crops
 from lightgesture.training.pool.negatives import Scene
 from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
-from lightgesture.training.pool.pool_samples import PoolSampling, pool_samples
+from lightgesture.training.pool.pool_samples import ALTERED_WEIGHT, pool_samples
 from lightgesture.training.pool.samples import LabelledHand
 
-SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=4)
+SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=0)
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +41,7 @@ def test_hands_come_first_then_each_row_once(originals: Originals, tmp_path: Pat
     pool = pool_of(originals, tmp_path / "pool")
     rows, hands = np.ones(len(pool.tokens), bool), np.array([True, False, True])
     rows[1] = False
-    found = list(pool_samples(pool, originals, rows, hands, SETTINGS, PoolSampling(0.3), 0))
+    found = list(pool_samples(pool, originals, rows, hands, SETTINGS, 0))
     plain, drawn = found[:2], found[2:]
     assert [(one.token, one.source, one.side, one.original) for one in plain] == [
         ("1", "anna", "right", True),
@@ -53,7 +54,7 @@ def test_hands_come_first_then_each_row_once(originals: Originals, tmp_path: Pat
     weights = np.array([one.weight for one in drawn])
     # The last copy of each hand is the mild one.
     assert (weights[copied[-3:]] == 1.0).all()
-    assert weights.sum() == pytest.approx(3 + 0.3 * (len(drawn) - 3))
+    assert weights.sum() == pytest.approx(3 + ALTERED_WEIGHT * (len(drawn) - 3))
 
 
 def test_a_row_is_seen_as_the_net_sees_it_shifted_within_its_margin(
@@ -63,7 +64,7 @@ def test_a_row_is_seen_as_the_net_sees_it_shifted_within_its_margin(
     rows, hands = np.ones(len(pool.tokens), bool), np.zeros(3, bool)
     corners = set()
     for row, sample in zip(
-        pool.patches, pool_samples(pool, originals, rows, hands, SETTINGS, PoolSampling(), 0), strict=True
+        pool.patches, pool_samples(pool, originals, rows, hands, SETTINGS, 0), strict=True
     ):
         patch = cut_patch(sample.image, sample.box, sample.side, PatchSettings())
         places = [
@@ -79,8 +80,8 @@ def test_a_row_is_seen_as_the_net_sees_it_shifted_within_its_margin(
 
 def test_rendered_hands_alone_are_the_originals(tmp_path: Path) -> None:
     nothing = Originals([])
-    pool = pool_of(nothing, tmp_path / "pool")
+    pool = make_pool(nothing, replace(SETTINGS, rendered=4), 0, 1, tmp_path, lambda *_: None)
     rows = np.ones(len(pool.tokens), bool)
-    found = list(pool_samples(pool, nothing, rows, np.zeros(0, bool), SETTINGS, PoolSampling(), 0))
+    found = list(pool_samples(pool, nothing, rows, np.zeros(0, bool), SETTINGS, 0))
     assert found
     assert all(one.original for one in found)

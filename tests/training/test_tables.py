@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import InputError
-from lightgesture.training.pool.negatives import NegativeSettings, read_scenes
+from lightgesture.training.pool.negatives import read_scenes
 from lightgesture.training.pool.samples import read_rows
 from lightgesture.training.tables import table_rows
 
@@ -66,8 +66,8 @@ def test_backslashes_part_folders(tmp_path):
     table.write_bytes(b"path;token\r\none\\a.jpg;5\r\nb\\c.jpg;0\r\n")
     assert [row.path for row in read_rows(table)] == [tmp_path / "one" / "a.jpg", tmp_path / "b\\c.jpg"]
     table.write_bytes(b"\xef\xbb\xbffile;x;y;w;h\r\none\\a.jpg;1;2;3;4\r\none\\a.jpg;2;2;3;4\r\n")
-    (scene,) = read_scenes(table, NegativeSettings())
+    (scene,) = read_scenes(table)
     assert scene.hands == ((1, 2, 3, 4), (2, 2, 3, 4))
     table.write_bytes(b"file;x;y;w;h\r\none\\a.jpg;1;2;3;inf\r\n")
     with pytest.raises(InputError, match=r"a\.csv, line 2: holds no box .*; correct it"):
-        read_scenes(table, NegativeSettings())
+        read_scenes(table)

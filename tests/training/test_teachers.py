@@ -41,7 +41,7 @@ def test_an_interruption_ends_all_of_them_at_once(tmp_path):
 
     def learn():
         with pytest.raises(KeyboardInterrupt):
-            teach(samples, 2, NetSettings(STEPS, batch=4), 0, 2, tmp_path, [].append)
+            teach(samples, 2, NetSettings(STEPS), 0, 2, tmp_path, [].append)
         ended.set()
 
     threading.Thread(target=learn, daemon=True).start()

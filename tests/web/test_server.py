@@ -341,7 +341,7 @@ def test_a_browser_that_takes_nothing_delays_nobody(serve):
         listener.show(noise, [FRAME])
         longest = max(longest, time.monotonic() - start)
         time.sleep(0.01)
-    assert listener._board._viewers == 1  # the slow one was left
+    assert listener.viewers == 1  # the slow one was left
     listener.stop()
     reader.join()
     assert received[0].count(b"image/jpeg") >= 3

@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     if args.centres is not None:
         svm = replace(svm, centres=args.centres)
     if args.steps is not None:
-        svm = replace(svm, descent=replace(svm.descent, steps=args.steps))
+        svm = replace(svm, steps=args.steps)
     progress = (lambda _: None) if args.quiet else say
     try:
         card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, tenths(progress))

@@ -26,22 +26,28 @@ CALIBRATION = 12
 """Batches from which the range of each tensor is measured."""
 
 
+BATCH = 128
+"""Patches of a step."""
+RATE = 3e-3
+"""Highest learning rate of what is no matrix within the net."""
+MATRIX_RATE = 0.05
+"""Highest of the matrices, see `optimisers`."""
+LONGEST_WARM_UP = 300
+"""Steps in which the rates rise, at most a quarter of all."""
+SMOOTHING = 0.05
+"""Share of the truth that is spread over all classes, 0 to 0.2, where the labels alone teach."""
+SOFTNESS = 2.0
+"""Temperature of the teachers' and the net's answers where they are compared."""
+
+
 @dataclass(frozen=True, slots=True)
 class NetSettings:
-    """steps, batch, rate: of the optimiser. matrix_rate: of the layers within the net, see `optimisers`.
-    precision: see `net_training.PRECISIONS`.
-    smoothing: share of the truth that is spread over all classes, 0 to 0.2.
-    taught: share of the loss that is the distance to the teachers' answers, 0 to 1. softness: temperature of both
-    answers in it (Hinton, Vinyals and Dean, "Distilling the Knowledge in a Neural Network", 2015)."""
+    """How long and in what a net learns."""
 
     steps: int
+    """Of the optimiser."""
     precision: Precision = "float32"
-    batch: int = 128
-    rate: float = 3e-3
-    matrix_rate: float = 0.05
-    smoothing: float = 0.05
-    taught: float = 1.0
-    softness: float = 2.0
+    """See `net_training.PRECISIONS`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,25 +106,22 @@ def train_hand_net(
     torch.set_num_threads(1)
 
     def batch(rng: np.random.Generator) -> Batch:
-        drawn = samples.draw(rng, settings.batch)
+        drawn = samples.draw(rng, BATCH)
         inputs = inputs_of(drawn, scale if CONTOUR in net.inputs else None)
         truth = (drawn.truth,) if drawn.answers is None else (drawn.truth, drawn.answers)
         return inputs, tuple(torch.from_numpy(values) for values in truth)
 
     def loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
         scores = outputs[SCORES]
-        own = functional.cross_entropy(scores, truth[0], label_smoothing=settings.smoothing)
         if len(truth) == 1:
-            return own
-        soft = settings.softness
-        wanted = torch.softmax(truth[1] / soft, dim=1)
-        far = functional.kl_div(torch.log_softmax(scores / soft, dim=1), wanted, reduction="batchmean")
-        return (1.0 - settings.taught) * own + settings.taught * soft**2 * far
+            return functional.cross_entropy(scores, truth[0], label_smoothing=SMOOTHING)
+        # Of teachers it learns what they say and nothing else (Hinton, Vinyals and Dean, 2015).
+        wanted = torch.softmax(truth[1] / SOFTNESS, dim=1)
+        far = functional.kl_div(torch.log_softmax(scores / SOFTNESS, dim=1), wanted, reduction="batchmean")
+        return SOFTNESS**2 * far
 
-    warm_up = max(1, min(300, settings.steps // 4))
-    loop = LoopSettings(
-        settings.steps, settings.rate, settings.matrix_rate, warm_up=warm_up, precision=settings.precision
-    )
+    warm_up = max(1, min(LONGEST_WARM_UP, settings.steps // 4))
+    loop = LoopSettings(settings.steps, RATE, MATRIX_RATE, warm_up=warm_up, precision=settings.precision)
     return train_net(net, batch, loss, loop, seed, checkpoint, progress, stopping)
 
 

@@ -25,22 +25,30 @@ PRECISIONS: tuple[Precision, ...] = get_args(Precision)
 on processors with instructions for it and several times as long on others."""
 
 
+DECAY = 0.02
+"""Of weights, a step, over the rate."""
+LARGEST_GRADIENT = 5.0
+"""Norm to which a step's gradient is cut."""
+SAVE_EVERY = 500
+"""Steps between checkpoints."""
+
+
 @dataclass(frozen=True, slots=True)
 class LoopSettings:
-    """steps: of the optimiser. rate: highest learning rate. matrix_rate: that of the matrices of layers within the net,
-    0 where all learn alike, see `optimisers`. warm_up: steps until they are reached. decay: of weights. clip: largest
-    norm of the gradient. mean: share of the running mean that each step keeps. save_every: steps between checkpoints.
-    precision: one of `PRECISIONS`."""
+    """How a net learns."""
 
     steps: int
+    """Of the optimiser."""
     rate: float
+    """Highest learning rate."""
     matrix_rate: float = 0.0
+    """That of the matrices of layers within the net, see `optimisers`; 0 where all learn alike."""
     warm_up: int = 300
-    decay: float = 0.02
-    clip: float = 5.0
+    """Steps until the rates are reached."""
     mean: float = 0.999
-    save_every: int = 500
+    """Share of the running mean of the weights that each step keeps."""
     precision: Precision = "float32"
+    """In which the net is reckoned, see `PRECISIONS`."""
 
 
 def train_net(
@@ -61,7 +69,7 @@ def train_net(
     # The order in memory that the system's convolutions of few channels are quickest in.
     net = net.to(memory_format=torch.channels_last)
     mean = copy.deepcopy(net)
-    optimiser = NetOptimiser(net, settings.rate, settings.matrix_rate, settings.decay)
+    optimiser = NetOptimiser(net, settings.rate, settings.matrix_rate, DECAY)
     first = _resume(checkpoint, net, mean, optimiser)
     left = TimeLeft(settings.steps, first)
     net.train()
@@ -70,10 +78,10 @@ def train_net(
             raise KeyboardInterrupt
         value = loss(net_outputs(net, inputs, settings.precision), truth)
         value.backward()  # type: ignore[no-untyped-call]
-        torch.nn.utils.clip_grad_norm_(net.parameters(), settings.clip)
+        torch.nn.utils.clip_grad_norm_(net.parameters(), LARGEST_GRADIENT)
         optimiser.step(_share_of_rate(step, settings))
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
-        if (step + 1) % settings.save_every == 0 or step + 1 == settings.steps:
+        if (step + 1) % SAVE_EVERY == 0 or step + 1 == settings.steps:
             progress(
                 f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}, "
                 f"{left.told(step + 1)}"

@@ -94,6 +94,15 @@ def _inside(value: float, size: int, margin: float) -> float:
     return min(max(value, margin), max(size - margin, margin))
 
 
+def _shown(hands: Sequence[Cutout], rng: np.random.Generator) -> list[Cutout | None]:
+    """Of the two hands those that are shown: now and then one alone, or none."""
+    if rng.random() < SINGLE_SHARE:
+        return [None, hands[1]]
+    if rng.random() < EMPTY_SHARE:
+        return [None, None]
+    return [*hands]
+
+
 class Composer:
     """Draws pictures without end from hands and backgrounds."""
 
@@ -154,28 +163,17 @@ class Composer:
         width, height = self._size
         unit = float(height * np.exp(rng.uniform(*np.log(HAND_HEIGHT))))
         self._put_things(canvas, unit, rng, sources)
-        axis = rng.uniform(0.3, 0.7) * width
-        shoulder = rng.uniform(0.3, 0.85) * height
+        axis, shoulder = rng.uniform(0.3, 0.7) * width, rng.uniform(0.3, 0.85) * height
         hands = self._hands(rng)
-        kept: list[Cutout | None] = [*hands]
-        if rng.random() < SINGLE_SHARE:
-            kept[0] = None
-        elif rng.random() < EMPTY_SHARE:
-            kept = [None, None]
-        lift = rng.uniform(*LIFT)
-        spread = rng.uniform(*SPREAD)
-        places = []
-        for sign in (-1.0, 1.0):
-            x = axis + sign * unit * (spread + rng.normal(0, 0.2))
-            y = shoulder - unit * (lift + rng.normal(0, 0.25))
-            places.append((_inside(x, width, 0.4 * unit), _inside(y, height, 0.4 * unit)))
-        chosen = [(hand, place) for hand, place in zip(kept, places, strict=True) if hand is not None]
+        sources |= {hand.source for hand in hands}
+        shown = _shown(hands, rng)
+        places = self._places(axis, shoulder, unit, rng)
+        chosen = [(hand, place) for hand, place in zip(shown, places, strict=True) if hand is not None]
         person = canvas.copy()
-        wrists = [(x, y + 0.35 * unit) for _, (x, y) in chosen]
-        opaque = hands[0].alpha > 0.9
-        skin = hands[0].image[opaque].mean(axis=0).astype(np.float32) / 255.0
         faces: tuple[Box, ...] = ()
         if chosen or rng.random() < 0.5:
+            wrists = [(x, y + 0.35 * unit) for _, (x, y) in chosen]
+            skin = hands[0].image[hands[0].alpha > 0.9].mean(axis=0).astype(np.float32) / 255.0
             faces = (draw_body(person, axis, shoulder, unit, wrists, skin, BARE_ARM_SHARE, rng),)
         boxes, tokens = [], []
         for hand, place in chosen:
@@ -187,8 +185,19 @@ class Composer:
             person = self._submerge(person, canvas, rng)
         elif dark:
             person = self._darken(person, canvas, rng)
-        sources |= {hand.source for hand in hands}
         return Composite(expose(person, rng), tuple(boxes), tuple(tokens), faces, frozenset(sources))
+
+    def _places(
+        self, axis: float, shoulder: float, unit: float, rng: np.random.Generator
+    ) -> list[tuple[float, float]]:
+        """Middles of the image-left and the image-right hand, about as high and as far out as one another."""
+        (width, height), lift, spread = self._size, rng.uniform(*LIFT), rng.uniform(*SPREAD)
+        places = []
+        for sign in (-1.0, 1.0):
+            x = axis + sign * unit * (spread + rng.normal(0, 0.2))
+            y = shoulder - unit * (lift + rng.normal(0, 0.25))
+            places.append((_inside(x, width, 0.4 * unit), _inside(y, height, 0.4 * unit)))
+        return places
 
     @staticmethod
     def _submerge(person: Float, background: Float, rng: np.random.Generator) -> Float:

@@ -46,14 +46,7 @@ def draw_body(
     cv2.fillConvexPoly(canvas, np.array(torso, np.int32), cloth, cv2.LINE_AA)
     head = at(axis, shoulder - 0.8 * unit)
     axes = max(1, round(0.42 * unit)), max(1, round(0.58 * unit))
-    cv2.ellipse(canvas, head, axes, 0, 0, 360, flesh, cv2.FILLED, cv2.LINE_AA)
-    if rng.random() < 0.75:  # hair or hood, then often a mask
-        top = rng.uniform(0.0, 0.3, 3).tolist()
-        cv2.ellipse(canvas, head, axes, 0, 180, 360, top, cv2.FILLED, cv2.LINE_AA)
-        if rng.random() < 0.6:
-            corner = head[0] - axes[0] * 3 // 4, head[1] - axes[1] // 3
-            other = head[0] + axes[0] * 3 // 4, head[1] + axes[1] // 5
-            cv2.rectangle(canvas, corner, other, rng.uniform(0.0, 0.8, 3).tolist(), cv2.FILLED)
+    _draw_head(canvas, head, axes, flesh, rng)
     bare = rng.random() < bare_arms
     for wrist in wrists:
         sign = 1.0 if wrist[0] > axis else -1.0
@@ -66,6 +59,21 @@ def draw_body(
         colour = flesh if bare else cloth
         cv2.line(canvas, elbow, at(*wrist), colour, max(1, round(0.36 * unit)), cv2.LINE_AA)
     return head[0] - axes[0], head[1] - axes[1], 2 * axes[0], 2 * axes[1]
+
+
+def _draw_head(
+    canvas: Float, middle: tuple[int, int], axes: tuple[int, int], flesh: list[float], rng: Random
+) -> None:
+    """A face, on most hair or a hood, and on many of those a mask."""
+    cv2.ellipse(canvas, middle, axes, 0, 0, 360, flesh, cv2.FILLED, cv2.LINE_AA)
+    if rng.random() >= 0.75:
+        return
+    top = rng.uniform(0.0, 0.3, 3).tolist()
+    cv2.ellipse(canvas, middle, axes, 0, 180, 360, top, cv2.FILLED, cv2.LINE_AA)
+    if rng.random() < 0.6:
+        corner = middle[0] - axes[0] * 3 // 4, middle[1] - axes[1] // 3
+        other = middle[0] + axes[0] * 3 // 4, middle[1] + axes[1] // 5
+        cv2.rectangle(canvas, corner, other, rng.uniform(0.0, 0.8, 3).tolist(), cv2.FILLED)
 
 
 def put_decoys(canvas: Float, unit: float, most: int, draw_texture: Callable[[], Float], rng: Random) -> None:

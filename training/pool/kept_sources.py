@@ -1,7 +1,9 @@
-"""Which hands are kept from a net: whole sources, each nearly always another person and another room."""
+"""Which hands are kept from a model, for its temperature and its scores: whole sources, each nearly always another
+person and another room. Where there are too few of them, single hands with all their copies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,18 +14,75 @@ from lightgesture.training.datasets import fold_of
 from lightgesture.training.pool.patch_kinds import Originals
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.pool.samples import LabelledHand
-from lightgesture.training.svm.machine import HeldOut
 
-ORDERS = 1 << 20
+ONE_IN: Final = 12
+"""Of so many hands, or groups of sources, one is kept."""
+LEAST_FITTED: Final = 30
+"""Hands or copies that a temperature is fitted on; of fewer it would say little."""
+ORDERS: Final = 1 << 20
 """So many places in the order in which sources are kept from the net; names hardly ever share one."""
 
 
-def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldOut:
+    """Answers of a model for samples that it did not see.
+
+    probabilities: float32 (n, classes). truth: int (n,), index of the class. sources: (n,), names. original: bool
+    (n,), False for altered copies.
+    """
+
+    probabilities: NDArray[np.float32]
+    truth: NDArray[np.int64]
+    sources: NDArray[np.str_]
+    original: NDArray[np.bool_]
+
+
+def kept_samples(
+    truth: NDArray[np.int64], sources: NDArray[np.str_], hands: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Which samples are kept from the machine, bool (n,): one of `ONE_IN` folds of the sources, less those that alone
+    show a class. Where these are all, single hands. Of too few hands none is kept.
+
+    hands: int (n,), numbers of the hands, -1 for samples of no hand.
+    """
+    for folds in (assign_folds(sources, hands, ONE_IN), _dealt(hands, ONE_IN)):
+        kept = folds == ONE_IN - 1
+        kept &= np.isin(truth, truth[~kept])
+        if kept.any():
+            break
+    return np.asarray(kept)
+
+
+def assign_folds(sources: NDArray[np.str_], hands: NDArray[np.int64], folds: int) -> NDArray[np.int64]:
+    """Fold of each sample, int (n,): whole sources, the largest first into the emptiest fold.
+
+    With fewer sources of hands than folds, hands are dealt out in turn instead, each with its copies.
+    """
+    names, members, sizes = np.unique(sources, return_inverse=True, return_counts=True)
+    shown = sources[hands >= 0] if (hands >= 0).any() else sources
+    if len(np.unique(shown)) < folds:
+        return _dealt(hands, folds)
+    fold_of_source = np.zeros(len(names), np.int64)
+    filled = np.zeros(folds)
+    for source in np.argsort(-sizes, kind="stable"):
+        fold_of_source[source] = filled.argmin()
+        filled[fold_of_source[source]] += sizes[source]
+    return np.asarray(fold_of_source[members.reshape(-1)])
+
+
+def _dealt(hands: NDArray[np.int64], folds: int) -> NDArray[np.int64]:
+    """Hands in turn; samples of no hand come into the first fold, or where there are no hands, in turn themselves."""
+    if (hands < 0).all():
+        return np.arange(len(hands)) % folds
+    return np.where(hands < 0, 0, hands % folds)
+
+
+def kept_out(hands: Sequence[LabelledHand], one_in: int = ONE_IN) -> NDArray[np.bool_]:
     """Which hands are kept from the net, bool (n,): whole sources that hold one hand in so many together.
 
     Sources come in an order that their names give, so that a further one changes little; a source that is too large
     or alone shows what is left of a class is passed over. Where sources are so few or so large that less than half of
-    that is found, one hand in so many is kept, whoever's it is.
+    that is found, one hand in so many is kept, whoever's it is, but none that alone shows its class.
     """
     names, members, sizes = np.unique(
         [hand.source for hand in hands], return_inverse=True, return_counts=True
@@ -37,14 +96,9 @@ def kept_out(hands: Sequence[LabelledHand], one_in: int) -> NDArray[np.bool_]:
         fits = sizes[kept].sum() + sizes[place] <= room
         kept[place] = fits and np.isin(tokens[members == place], learnt).all()
     if sizes[kept].sum() < 0.5 * room:
-        return np.asarray(np.arange(len(hands)) % one_in == 0)
+        single = np.arange(len(hands)) % one_in == 0
+        return np.asarray(single & np.isin(tokens, tokens[~single]))
     return np.asarray(kept[members])
-
-
-def keeps_whole_sources(hands: Sequence[LabelledHand], kept: NDArray[np.bool_]) -> bool:
-    """Whether no source has both hands that are kept from the net and others."""
-    sources = np.array([hand.source for hand in hands])
-    return not np.isin(sources[kept], sources[~kept]).any()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,8 +132,8 @@ def held_out_hands(
     number = {name: index for index, name in enumerate(model.classes)}
     truth = [number[hand.token] for hand in hands] + [number[str(pool.tokens[row])] for row in rows]
     return HeldOutHands(
-        np.stack([*plain, *altered]),
+        np.array([*plain, *altered], np.uint8).reshape(-1, model.patch.size, model.patch.size, 3),
         np.array(truth, np.int64),
-        np.array([hand.source for hand in hands] * 2),
+        np.array([hand.source for hand in hands] * 2, np.str_),
         np.arange(2 * len(hands)) < len(hands),
     )

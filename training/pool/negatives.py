@@ -7,6 +7,7 @@ so most of these regions are its own proposals.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -25,23 +26,18 @@ from lightgesture.training.tables import picture_path, table_rows
 Random = np.random.Generator
 
 
-@dataclass(frozen=True, slots=True)
-class NegativeSettings:
-    """How many regions of which kind.
-
-    longest_side: pixels to which a picture is reduced. proposals, random_boxes: regions of each picture.
-    smallest, largest: side of a random box over the picture's shorter side.
-    missed: share of labelled hands beside which a bad box is laid. accepted_iou: a box that overlaps a hand more
-        than this is no negative, 0 to 1.
-    """
-
-    longest_side: int = 320
-    proposals: int = 5
-    random_boxes: int = 3
-    smallest: float = 0.1
-    largest: float = 0.6
-    missed: float = 0.3
-    accepted_iou: float = 0.3
+LONGEST_SIDE: Final = 320
+"""Pixels to which the longer side of a picture is reduced."""
+PROPOSALS: Final = 5
+"""The selector's own proposals that are taken of each picture."""
+RANDOM_BOXES: Final = 3
+"""Boxes drawn at random in each picture."""
+SMALLEST: Final = 0.1
+"""Side of the smallest random box over the picture's shorter side."""
+LARGEST: Final = 0.6
+"""Side of the largest."""
+ACCEPTED_IOU: Final = 0.3
+"""A box that overlaps a hand more than this is no negative."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +50,7 @@ class Scene:
     source: str
 
 
-def read_backgrounds(folder: Path, settings: NegativeSettings) -> list[Scene]:
+def read_backgrounds(folder: Path) -> list[Scene]:
     """All pictures under a folder, without any hand; the source is the folder a picture lies in."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; give --backgrounds a folder of pictures without hands")
@@ -64,12 +60,11 @@ def read_backgrounds(folder: Path, settings: NegativeSettings) -> list[Scene]:
             f"{folder}: holds no pictures; give --backgrounds a folder of pictures without hands"
         )
     return [
-        Scene(_reduced(read_picture(path), settings)[0], (), (), f"background {path.parent.name}")
-        for path in paths
+        Scene(_reduced(read_picture(path))[0], (), (), f"background {path.parent.name}") for path in paths
     ]
 
 
-def read_scenes(manifest: Path, settings: NegativeSettings) -> list[Scene]:
+def read_scenes(manifest: Path) -> list[Scene]:
     """Whole pictures with boxes: columns `file`, `x`, `y`, `w`, `h`, and if known `set` and `face_boxes`.
 
     Several rows may share a file; `face_boxes` is `x,y,w,h` joined by `;`. Paths are relative to the manifest.
@@ -85,27 +80,25 @@ def read_scenes(manifest: Path, settings: NegativeSettings) -> list[Scene]:
         except (ValueError, OverflowError) as error:
             raise InputError(f"{manifest}, line {line}: holds no box ({error}); correct it") from None
         sources[path] = row.get("set") or "scenes"
-    return [_scene(path, hands[path], faces[path], sources[path], settings) for path in hands]
+    return [_scene(path, hands[path], faces[path], sources[path]) for path in hands]
 
 
-def negatives(
-    scenes: Sequence[Scene], settings: NegativeSettings, random: Random
-) -> Iterator[TrainingSample]:
+def negatives(scenes: Sequence[Scene], random: Random) -> Iterator[TrainingSample]:
     """Faces, proposals and random boxes of pictures, none of them on a hand."""
     colours = ColourStage()
     for scene in scenes:
         colour = colours.process(scene.image)
         proposed = np.asarray(propose(colour).boxes, np.float64) * np.tile(colour.scale, 2)
-        drawn = _random_boxes(scene.image.shape[:2], settings, random)
-        chosen = _clear(proposed, scene.hands, settings)
-        chosen = chosen[random.permutation(len(chosen))[: settings.proposals]]
-        boxes = [*scene.faces, *_as_boxes(chosen), *_as_boxes(_clear(drawn, scene.hands, settings))]
+        drawn = _random_boxes(scene.image.shape[:2], random)
+        chosen = _clear(proposed, scene.hands)
+        chosen = chosen[random.permutation(len(chosen))[:PROPOSALS]]
+        boxes = [*scene.faces, *_as_boxes(chosen), *_as_boxes(_clear(drawn, scene.hands))]
         for box in boxes:
             side = "left" if random.random() < 0.5 else "right"
             yield TrainingSample(image=scene.image, box=box, side=side, token=NONE, source=scene.source)
 
 
-def missed_hand(hand: LabelledHand, settings: NegativeSettings, random: Random) -> TrainingSample | None:
+def missed_hand(hand: LabelledHand, random: Random) -> TrainingSample | None:
     """A box beside or on a small part of a hand, None where the draw overlaps the hand too much."""
     x, y, width, height = hand.box
     side = max(width, height) * random.uniform(0.3, 0.9)
@@ -114,13 +107,13 @@ def missed_hand(hand: LabelledHand, settings: NegativeSettings, random: Random) 
     overlap = pairwise_iou(np.array([box]), np.array([hand.box]))[0, 0]
     rows, columns = hand.image.shape[:2]
     inside = 0 <= centre[0] < columns and 0 <= centre[1] < rows
-    if overlap > settings.accepted_iou or not inside:
+    if overlap > ACCEPTED_IOU or not inside:
         return None
     return TrainingSample(image=hand.image, box=box, side=hand.side, token=NONE, source=hand.source)
 
 
-def _scene(path: Path, hands: list[Box], faces: list[Box], source: str, settings: NegativeSettings) -> Scene:
-    image, scale = _reduced(read_picture(path), settings)
+def _scene(path: Path, hands: list[Box], faces: list[Box], source: str) -> Scene:
+    image, scale = _reduced(read_picture(path))
 
     def scaled(boxes: list[Box]) -> tuple[Box, ...]:
         return tuple(_as_boxes(np.array(boxes, np.float64).reshape(-1, 4) * scale))
@@ -128,30 +121,28 @@ def _scene(path: Path, hands: list[Box], faces: list[Box], source: str, settings
     return Scene(image, scaled(hands), scaled(faces), source)
 
 
-def _reduced(image: Image, settings: NegativeSettings) -> tuple[Image, float]:
-    """The picture at most `longest_side` pixels long, and the factor."""
-    scale = settings.longest_side / max(image.shape[:2])
+def _reduced(image: Image) -> tuple[Image, float]:
+    """The picture at most `LONGEST_SIDE` pixels long, and the factor."""
+    scale = LONGEST_SIDE / max(image.shape[:2])
     if scale >= 1.0:
         return image, 1.0
     small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     return np.asarray(small, np.uint8), scale
 
 
-def _random_boxes(size: tuple[int, ...], settings: NegativeSettings, random: Random) -> NDArray[np.float64]:
+def _random_boxes(size: tuple[int, ...], random: Random) -> NDArray[np.float64]:
     rows, columns = size[:2]
-    sides = min(rows, columns) * random.uniform(settings.smallest, settings.largest, settings.random_boxes)
+    sides = min(rows, columns) * random.uniform(SMALLEST, LARGEST, RANDOM_BOXES)
     left = random.uniform(0.0, 1.0, len(sides)) * (columns - sides)
     top = random.uniform(0.0, 1.0, len(sides)) * (rows - sides)
     return np.stack([left, top, sides, sides], axis=1)
 
 
-def _clear(
-    boxes: NDArray[np.float64], hands: Sequence[Box], settings: NegativeSettings
-) -> NDArray[np.float64]:
+def _clear(boxes: NDArray[np.float64], hands: Sequence[Box]) -> NDArray[np.float64]:
     """The boxes that overlap no hand."""
     if not hands or not len(boxes):
         return boxes
-    return np.asarray(boxes[pairwise_iou(boxes, np.array(hands)).max(axis=1) <= settings.accepted_iou])
+    return np.asarray(boxes[pairwise_iou(boxes, np.array(hands)).max(axis=1) <= ACCEPTED_IOU])
 
 
 def _as_boxes(boxes: NDArray[np.float64]) -> list[Box]:

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
 
 import cv2
 import numpy as np
@@ -9,55 +11,70 @@ import numpy as np
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Image
-from lightgesture.models import NONE, TrainingSample
-from lightgesture.training.pictures.augment import CANVAS, MILD, MIRRORED_TOKENS, AugmentSettings, augment
+from lightgesture.models import CLASSES, NONE, TrainingSample
+from lightgesture.synth.crops import CropMaker, CropSettings
+from lightgesture.training.pictures.augment import (
+    CANVAS,
+    MILD,
+    MIRRORED_TOKENS,
+    AugmentSettings,
+    augment,
+    shifted_box,
+)
 from lightgesture.training.pictures.hidden_hands import hide
 from lightgesture.training.pictures.light import relight
-from lightgesture.training.pool.negatives import NegativeSettings, Scene, missed_hand, negatives
-from lightgesture.training.pool.samples import LabelledHand
-from lightgesture.training.pool.synthetic import synthetic_hands
+from lightgesture.training.pool.negatives import Scene, missed_hand, negatives, read_backgrounds, read_scenes
+from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
 
 Random = np.random.Generator
+
+PATCH: Final = PatchSettings()
+"""What a model sees of a hand."""
+MARGIN: Final = 2
+"""Pixels that are kept on each side of a patch, by which it is shifted in training."""
+KEPT: Final = PatchSettings(PATCH.size + 2 * MARGIN, PATCH.context * (PATCH.size + 2 * MARGIN) / PATCH.size)
+"""A patch with its margin."""
+CONTOUR: Final = ContourSettings()
+"""Numbers of the outline, which go with each patch."""
+SMALLEST_HAND: Final = 12
+"""Longer side of the smallest box that a model reads, pixels."""
+HIDDEN: Final = 0.5
+"""Share of the rounds in which a copy of each hand is added of which too little is seen."""
+MISSED: Final = 0.3
+"""Share of the rounds in which a box is laid beside each hand."""
+CROPS: Final = CropSettings(yaw=28.0, pitch=18.0, roll=16.0, sideways=0.35, together=0.45)
+"""How rendered hands vary: turned further than people turn their hands for a camera, because such views are rare among
+the pictures; a third of the rings are seen from the side, as divers show an ok to a camera, and nearly half of the
+hands hold their fingers together."""
+RENDERED_SOURCES: Final = 40
+"""Names over which rendered hands are spread: weights and held-out folds treat them as so many people."""
+RENDERED_SOURCE: Final = "synthetic"
+"""Beginning of these names."""
 
 
 @dataclass(frozen=True, slots=True)
 class PoolSettings:
-    """How much is drawn and how.
-
-    copies: altered copies of each hand, 1 to 100. mild_share: copies of each hand besides that are hardly altered, over
-    `copies`, 0 to 1. rounds: how often regions that are no hand are drawn from each picture. hidden: share of the
-    rounds in which a copy of each hand is added of which too little is seen, 0 to 1.
-    patch: of the net. margin: pixels that are kept on each side of a patch, by which it is shifted in training.
-    contour: numbers of the outline, which go with each patch. rendered: number of rendered hands. augment, mild,
-    negative: how copies, mild copies and regions are made.
-    """
+    """How much is drawn and how."""
 
     copies: int = 24
+    """Altered copies of each hand, 1 to 100; time and disk grow with them."""
     mild_share: float = 1 / 3
+    """Copies of each hand besides that are hardly altered, over `copies`, 0 to 1; none read plain pictures worse."""
     rounds: int = 8
-    hidden: float = 0.5
-    patch: PatchSettings = field(default_factory=PatchSettings)
-    margin: int = 2
-    contour: ContourSettings = field(default_factory=ContourSettings)
+    """How often regions that are no hand are drawn from each picture, 1 to 100."""
     rendered: int = 12000
+    """Rendered hands beside the real ones, of the signs that both know."""
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(
             rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
         )
     )
-    mild: AugmentSettings = MILD
-    negative: NegativeSettings = field(default_factory=NegativeSettings)
+    """How far copies go; mild copies go as far as `augment.MILD`."""
 
     @property
     def mild_copies(self) -> int:
         """Of each hand."""
         return round(self.mild_share * self.copies)
-
-    @property
-    def kept(self) -> PatchSettings:
-        """A patch with its margin."""
-        size = self.patch.size + 2 * self.margin
-        return PatchSettings(size, self.patch.context * size / self.patch.size)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,6 +84,29 @@ class Originals:
     hands: Sequence[LabelledHand]
     backgrounds: Sequence[Scene] = ()
     scenes: Sequence[Scene] = ()
+
+    @property
+    def rendered_classes(self) -> frozenset[str]:
+        """Classes of which rendered hands can be had, all where there are no hands.
+
+        Beside own signs there is no rendered `none`: shapes that the ten tokens lack may be just these signs.
+        """
+        found = {hand.token for hand in self.hands}
+        known = found & set(CLASSES) if found else set(CLASSES)
+        return frozenset(known - {NONE} if found - known else known)
+
+
+def read_originals(rows: Sequence[HandRow], backgrounds: Sequence[Path], scenes: Path | None) -> Originals:
+    """All pictures that a classifier is trained on, read once.
+
+    backgrounds: folders of pictures without hands. scenes: table of whole pictures with boxes of hands and faces.
+    Raises InputError.
+    """
+    return Originals(
+        [load_hand(row) for row in rows],
+        [scene for folder in backgrounds for scene in read_backgrounds(folder)],
+        read_scenes(scenes) if scenes else (),
+    )
 
 
 Draw = Callable[[Originals, PoolSettings, int, int, Random], Iterator[TrainingSample]]
@@ -79,9 +119,9 @@ def _copies(
 
 
 def _mild(
-    originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
+    originals: Originals, _settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    return _altered(originals, settings.mild, first, last, random)
+    return _altered(originals, MILD, first, last, random)
 
 
 def _altered(
@@ -109,7 +149,7 @@ def _hidden(
 ) -> Iterator[TrainingSample]:
     pictures = _behind(originals)
     for hand in originals.hands[first:last]:
-        if random.random() < settings.hidden:
+        if random.random() < HIDDEN:
             image, box, _ = augment(hand, pictures, settings.augment, random)
             image, box = hide(image, box, pictures, random)
             yield TrainingSample(
@@ -121,8 +161,8 @@ def _missed(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
     for hand in originals.hands[first:last]:
-        if random.random() < settings.negative.missed:
-            region = missed_hand(hand, settings.negative, random)
+        if random.random() < MISSED:
+            region = missed_hand(hand, random)
             if region is not None:
                 yield _relit(region, settings, random)
 
@@ -132,7 +172,7 @@ def _regions(
 ) -> Iterator[TrainingSample]:
     scenes = [*originals.backgrounds, *originals.scenes]
     for number in range(first, last):
-        for region in negatives(scenes[number : number + 1], settings.negative, random):
+        for region in negatives(scenes[number : number + 1], random):
             if not scenes[number].hands:
                 # Water differs from picture to picture as people do from source to source, and weighs like them.
                 region = replace(region, source=f"{region.source} {number}")
@@ -142,11 +182,28 @@ def _regions(
 def _rendered(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    seed = int(random.integers(2**31))
-    tokens = {hand.token for hand in originals.hands}
-    for sample in synthetic_hands(last - first, seed, settings.augment):
-        if not tokens or sample.token in tokens:
+    wanted = originals.rendered_classes
+    for sample in rendered_hands(last - first, int(random.integers(2**31)), settings.augment):
+        if sample.token in wanted:
             yield sample
+
+
+def rendered_hands(count: int, seed: int, augment: AugmentSettings) -> Iterator[TrainingSample]:
+    """`count` rendered hands of all tokens in turn and some `none`, boxes wrong by as much as those of copies.
+
+    They hold what real pictures lack: oblique views, fingers together, dark skin in dark rooms, water.
+    """
+    random = np.random.default_rng(seed)
+    for index, crop in enumerate(CropMaker(seed, "train", CROPS).samples(count)):
+        yield TrainingSample(
+            image=crop.image,
+            box=shifted_box(crop.box, augment, random),
+            # A crop obeys the rule of upright crops: the thumb's direction in the picture names the token.
+            side="left",
+            token=crop.token,
+            source=f"{RENDERED_SOURCE} {index % RENDERED_SOURCES}",
+            original=False,
+        )
 
 
 KINDS: Mapping[str, Draw] = {

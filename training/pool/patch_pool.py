@@ -19,7 +19,15 @@ from lightgesture.features.outline.contours import contour_length, contour_vecto
 from lightgesture.features.patch import cut_patch
 from lightgesture.models import NONE
 from lightgesture.results.atomic import replacing
-from lightgesture.training.pool.patch_kinds import COPIED, KINDS, Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import (
+    CONTOUR,
+    COPIED,
+    KEPT,
+    KINDS,
+    MARGIN,
+    Originals,
+    PoolSettings,
+)
 
 Progress = Callable[[str, int, int], None]
 HANDS_A_TASK = 400
@@ -122,7 +130,7 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
         tasks += parts("missed", len(originals.hands), settings.rounds)
         tasks += parts("hidden", len(originals.hands), settings.rounds)
     tasks += parts("mild", len(originals.hands), settings.mild_copies)
-    return tasks + parts("rendered", settings.rendered, 1)
+    return tasks + parts("rendered", settings.rendered if originals.rendered_classes else 0, 1)
 
 
 def _results(
@@ -147,15 +155,15 @@ def _draw(task: _Task) -> _Rows:
         raise RuntimeError("the worker has nothing to draw from; call make_pool")
     originals, settings, seed = _worker
     random = np.random.default_rng((seed, list(KINDS).index(task.kind), task.turn, task.first))
-    size, patches, tokens, sources = settings.kept, [], [], []
+    patches, tokens, sources = [], [], []
     for sample in KINDS[task.kind](originals, settings, task.first, task.last, random):
-        patches.append(cut_patch(sample.image, sample.box, sample.side, size))
+        patches.append(cut_patch(sample.image, sample.box, sample.side, KEPT))
         tokens.append(sample.token)
         sources.append(sample.source)
-    cut = np.array(patches, np.uint8).reshape(len(patches), size.size, size.size, 3)
-    inner = slice(settings.margin, size.size - settings.margin)
-    contours = np.zeros((len(cut), contour_length(settings.contour)), np.float16)
+    cut = np.array(patches, np.uint8).reshape(len(patches), KEPT.size, KEPT.size, 3)
+    inner = slice(MARGIN, KEPT.size - MARGIN)
+    contours = np.zeros((len(cut), contour_length(CONTOUR)), np.float16)
     if len(cut):
-        contours[:] = contour_vectors(np.ascontiguousarray(cut[:, inner, inner]), settings.contour)
+        contours[:] = contour_vectors(np.ascontiguousarray(cut[:, inner, inner]), CONTOUR)
     hands = range(task.first, task.last) if task.kind in COPIED else [-1] * len(cut)
     return _Rows(cut, contours, tokens, sources, list(hands))

@@ -1,7 +1,7 @@
 """A pool of patches, and the hands that it was drawn from, as samples of a machine that sees each of them once."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,17 +9,12 @@ from numpy.typing import NDArray
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Box
 from lightgesture.models import TrainingSample
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import MARGIN, PATCH, Originals, PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool
 
-
-@dataclass(frozen=True, slots=True)
-class PoolSampling:
-    """altered_weight: weight of a row that is no plain hand (altered much, hidden, no hand, rendered) beside 1 of a
-    hand as it is or hardly altered, 0 to 1; smaller reads plain pictures better, larger those in bad light and badly
-    boxed ones."""
-
-    altered_weight: float = 0.25
+ALTERED_WEIGHT: Final = 0.25
+"""Weight of a row that is no plain hand (altered much, hidden, no hand, rendered) beside 1 of a hand as it is or hardly
+altered; smaller reads plain pictures better, larger those in bad light and badly boxed ones."""
 
 
 def pool_samples(
@@ -28,7 +23,6 @@ def pool_samples(
     rows: NDArray[np.bool_],
     hands: NDArray[np.bool_],
     settings: PoolSettings,
-    sampling: PoolSampling,
     seed: int,
 ) -> Iterator[TrainingSample]:
     """The chosen hands as they are, then the chosen rows of the pool, each shifted within its margin once.
@@ -38,11 +32,16 @@ def pool_samples(
     for place in np.flatnonzero(hands):
         hand = originals.hands[int(place)]
         yield TrainingSample(
-            image=hand.image, box=hand.box, side=hand.side, token=hand.token, source=hand.source
+            image=hand.image,
+            box=hand.box,
+            side=hand.side,
+            token=hand.token,
+            source=hand.source,
+            hand=int(place),
         )
-    size = settings.patch.size
-    box = _whole(settings.patch)
-    corners = np.random.default_rng((seed, 2)).integers(2 * settings.margin + 1, size=(len(rows), 2))
+    size = PATCH.size
+    box = _whole(PATCH)
+    corners = np.random.default_rng((seed, 2)).integers(2 * MARGIN + 1, size=(len(rows), 2))
     mild = _mild_rows(pool, len(originals.hands), settings)
     for row in np.flatnonzero(rows):
         top, left = corners[row]
@@ -53,8 +52,9 @@ def pool_samples(
             side="left",
             token=str(pool.tokens[row]),
             source=str(pool.sources[row]),
+            hand=int(pool.hands[row]),
             original=not originals.hands,
-            weight=1.0 if mild[row] else sampling.altered_weight,
+            weight=1.0 if mild[row] else ALTERED_WEIGHT,
         )
 
 

@@ -1,22 +1,30 @@
 """Labelled hands from a manifest, or from folders named after their classes.
 
+A class may have any name that a grammar takes for a token. Of the names, `none` stands for what is no sign, and `left`
+and `right` for two signs that are each other's mirror image; no other name has a meaning.
+
+In a folder, the folder below the class's in which a picture lies is its source: `five/anna/1.jpg` is Anna's.
+
 A manifest is a CSV table with a header. `path` is relative to its folder, `token` a class name. The box is the
 outline `x`, `y`, `w`, `h` in pixels, or goes round the landmarks, `hx0` to `hy1`, and is grown to the outline; without
 either the whole picture is the hand. Optional: `set` (the person, room and camera; else the picture's folder), `side`
 (else left), `lm` (21 landmarks `x;y`), `licence`.
 """
 
-from collections.abc import Sequence
+import re
+from collections import Counter
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.errors import InputError
+from lightgesture.errors import InputError, UsageError
 from lightgesture.features.types import Box, Image
-from lightgesture.models import CLASSES
+from lightgesture.fsm.language.schema import TOKEN
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.datasets import LANDMARK_MARGIN, grow_box
 from lightgesture.training.tables import picture_path, table_rows
@@ -59,23 +67,32 @@ def landmark_box(landmarks: NDArray[np.float32]) -> Box:
     return grow_box(x0, y0, x1, y1, LANDMARK_MARGIN)
 
 
-def read_rows(data: Path, classes: Sequence[str] = CLASSES) -> list[HandRow]:
+def read_rows(data: Path, without: Collection[str] = ()) -> list[HandRow]:
     """Rows of a manifest, or of a folder with one folder a class.
 
-    Raises InputError for what cannot be read, an unknown class, fewer than two classes, or missing pictures.
+    without: sources that are left out. Raises InputError for what cannot be read or is missing, UsageError for names
+    that are no token, for a class without pictures, and for fewer than two classes.
     """
-    rows = _folder_rows(data, classes) if data.is_dir() else _manifest_rows(data, classes)
+    rows = _folder_rows(data) if data.is_dir() else _manifest_rows(data)
     missing = [row.path for row in rows if not row.path.is_file()]
     if missing:
         raise InputError(
             f"{data}: {len(missing)} of {len(rows)} pictures are missing, first {missing[0]}; restore them"
         )
-    found = {row.token for row in rows}
-    if len(found) < 2:
-        raise InputError(
-            f"{data}: holds {sorted(found) or 'no class'}; a classifier needs at least two classes"
-        )
-    return rows
+    kept = [row for row in rows if row.source not in without]
+    counts = Counter(row.token for row in kept)
+    if len(counts) < 2:
+        found = f"the class {next(iter(counts))!r} alone" if counts else "no class"
+        raise UsageError(f"{data}: holds {found}; a classifier needs pictures of at least two classes")
+    return kept
+
+
+def rows_digest(rows: Sequence[HandRow]) -> str:
+    """Other for other hands: by the names and sizes of their pictures and what the rows say of them."""
+    known = [
+        (str(row.path), row.path.stat().st_size, row.token, row.source, row.side, row.box) for row in rows
+    ]
+    return sha256(repr(known).encode()).hexdigest()
 
 
 def load_hand(row: HandRow) -> LabelledHand:
@@ -104,28 +121,38 @@ def load_hand(row: HandRow) -> LabelledHand:
     return LabelledHand(kept, box, row.side, row.token, row.source, landmarks)
 
 
-def _folder_rows(folder: Path, classes: Sequence[str]) -> list[HandRow]:
-    names = sorted(entry.name for entry in folder.iterdir() if entry.is_dir())
-    unknown = [name for name in names if name not in classes]
-    if unknown:
-        raise InputError(f"{folder}: folder {unknown[0]!r} is no class; known are {', '.join(classes)}")
-    return [
-        HandRow(path, name, source=f"{folder.name}/{path.parent.relative_to(folder / name)}")
-        for name in names
-        for path in sorted((folder / name).rglob("*"))
-        if is_picture_name(path)
-    ]
+def _check_class(place: str, name: str, remedy: str) -> None:
+    if re.fullmatch(TOKEN, name) is None:
+        raise UsageError(
+            f"{place}: {name[:40]!r} cannot be a token of a grammar; {remedy} with letters a-z, digits and _, "
+            "at most 32"
+        )
 
 
-def _manifest_rows(manifest: Path, classes: Sequence[str]) -> list[HandRow]:
+def _folder_rows(folder: Path) -> list[HandRow]:
+    # Hidden folders are not the user's: tools and systems keep theirs beside pictures.
+    own = sorted(entry for entry in folder.iterdir() if entry.is_dir() and not entry.name.startswith("."))
+    rows: list[HandRow] = []
+    for entry in own:
+        _check_class(str(folder), entry.name, "name the folder")
+        pictures = [path for path in sorted(entry.rglob("*")) if is_picture_name(path)]
+        if not pictures:
+            raise UsageError(f"{entry}: holds no pictures; add some of this class or remove the folder")
+        rows += [
+            HandRow(path, entry.name, source=str(folder.name / path.parent.relative_to(entry)))
+            for path in pictures
+        ]
+    return rows
+
+
+def _manifest_rows(manifest: Path) -> list[HandRow]:
     rows = table_rows(manifest, ("path", "token"), "give a manifest or a folder")
-    return [_manifest_row(manifest, line, row, classes) for line, row in rows]
+    return [_manifest_row(manifest, line, row) for line, row in rows]
 
 
-def _manifest_row(manifest: Path, line: int, row: dict[str, str], classes: Sequence[str]) -> HandRow:
+def _manifest_row(manifest: Path, line: int, row: dict[str, str]) -> HandRow:
     place = f"{manifest}, line {line}"
-    if row["token"] not in classes:
-        raise InputError(f"{place}: token {row['token']!r} is no class; known are {', '.join(classes)}")
+    _check_class(place, row["token"], "name the token")
     side = row.get("side") or "left"
     if side not in ("left", "right"):
         raise InputError(f"{place}: side {side!r}; it must be left or right")

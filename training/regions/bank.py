@@ -59,7 +59,7 @@ def hand_outlines(data: Path, rng: np.random.Generator, without: LeftOut) -> dic
     for token, rows in by_token.items():
         found[token] = []
         for row in _source_by_source(rows, rng):
-            contour = _cut_out_outline(data, row)
+            contour = cut_out_outline(data, row)
             if contour is not None:
                 found[token].append(contour)
             if len(found[token]) == HANDS:
@@ -76,7 +76,7 @@ def _source_by_source(rows: Sequence[dict[str, str]], rng: np.random.Generator) 
         yield from (own[place] for own in by_source.values() if place < len(own))
 
 
-def _cut_out_outline(data: Path, row: dict[str, str]) -> Contour | None:
+def cut_out_outline(data: Path, row: dict[str, str]) -> Contour | None:
     image = read_picture(data / "hands" / row["path"])
     # GrabCut starts its clusters by a generator of OpenCV that goes on from call to call.
     cv2.setRNGSeed(0)

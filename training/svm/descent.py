@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.models.projection import Progress
 from lightgesture.models.svm import radial_kernel
+from lightgesture.training.svm.projection import Progress
 
 Float = NDArray[np.float32]
 
@@ -21,22 +21,16 @@ MOMENTUM, MEMORY = 0.9, 0.99
 TINY = np.float32(1e-8)
 
 
-@dataclass(frozen=True, slots=True)
-class DescentSettings:
-    """How the machine is learnt.
-
-    steps: 0 leaves it as it starts; accuracy grows to some 40,000. batch: samples of a step. rate: of the first steps,
-    in spreads of the numbers that are learnt, 0.003 to 0.03; it falls to 0 by the last. centre_rate: of the
-    expansion vectors over that. warm_up: steps in which it rises. dropped: share of a sample's numbers that a step
-    does not see, 0 to 0.3, which keeps the machine from leaning on few of them.
-    """
-
-    steps: int = 40000
-    batch: int = 512
-    rate: float = 0.02
-    centre_rate: float = 3.0
-    warm_up: int = 200
-    dropped: float = 0.05
+BATCH = 512
+"""Samples of a step."""
+RATE = 0.02
+"""Of the first steps, in spreads of the numbers that are learnt, 0.003 to 0.03; it falls to 0 by the last."""
+CENTRE_RATE = 3.0
+"""Of the expansion vectors over `RATE`."""
+WARM_UP = 200
+"""Steps in which the rate rises."""
+DROPPED = 0.05
+"""Share of a sample's numbers that a step does not see, 0 to 0.3, which keeps the machine from leaning on few."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -88,26 +82,29 @@ def descend(
     samples: NDArray[np.float16],
     truth: NDArray[np.int64],
     weights: Float,
-    settings: DescentSettings,
+    steps: int,
     seed: int,
     progress: Progress,
 ) -> Machine:
-    """The machine after all steps on samples (n, d) of classes `truth` (n,), drawn as often as `weights` (n,) say."""
+    """The machine after so many steps.
+
+    samples: (n, d). truth: (n,), numbers of their classes. weights: (n,), how often each is drawn beside others.
+    """
     random = np.random.default_rng((seed, 1))
     frequency = np.cumsum(weights, dtype=np.float64)
     frequency /= frequency[-1]
-    sizes = _spreads(machine, settings)
+    sizes = _spreads(machine)
     parts = [part.copy() for part in machine.parts]
     means, squares = ([np.zeros_like(part) for part in parts] for _ in range(2))
     signs = np.where(np.eye(len(machine.bias), dtype=bool), np.float32(1.0), np.float32(-1.0))
-    for step in range(settings.steps):
-        drawn = np.searchsorted(frequency, random.random(settings.batch))
+    for step in range(steps):
+        drawn = np.searchsorted(frequency, random.random(BATCH))
         drawn = np.minimum(drawn, len(samples) - 1)
         seen = samples[drawn].astype(np.float32)
-        seen *= random.random(seen.shape, np.float32) >= settings.dropped
-        seen /= np.float32(1.0 - settings.dropped)
+        seen *= random.random(seen.shape, np.float32) >= DROPPED
+        seen /= np.float32(1.0 - DROPPED)
         _, gradients = hinge_gradients(Machine(*parts), seen, signs[truth[drawn]])
-        rise = min(1.0, (step + 1) / settings.warm_up) * (1.0 - step / settings.steps)
+        rise = min(1.0, (step + 1) / WARM_UP) * (1.0 - step / steps)
         unbiased = np.sqrt(1.0 - MEMORY ** (step + 1)) / (1.0 - MOMENTUM ** (step + 1))
         for part, mean, square, gradient, size in zip(
             parts, means, squares, gradients.parts, sizes, strict=True
@@ -115,16 +112,16 @@ def descend(
             mean += np.float32(1.0 - MOMENTUM) * (gradient - mean)
             square += np.float32(1.0 - MEMORY) * (gradient * gradient - square)
             part -= np.float32(size * rise * unbiased) * mean / (np.sqrt(square) + TINY)
-        progress("learn the machine", step + 1, settings.steps)
+        progress("learn the machine", step + 1, steps)
     return Machine(*parts)
 
 
-def _spreads(machine: Machine, settings: DescentSettings) -> tuple[float, float, float, float]:
+def _spreads(machine: Machine) -> tuple[float, float, float, float]:
     """Length of a full step of each part's numbers."""
     projection = np.abs(machine.projection)
     return (
-        settings.rate * float(projection.max(axis=0).mean()),
-        settings.rate * settings.centre_rate * float(machine.centres.std()),
-        settings.rate * float(machine.weights.std()),
-        settings.rate,
+        RATE * float(projection.max(axis=0).mean()),
+        RATE * CENTRE_RATE * float(machine.centres.std()),
+        RATE * float(machine.weights.std()),
+        RATE,
     )

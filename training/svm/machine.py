@@ -8,6 +8,7 @@ is a ridge regression. From there on its vectors, its projection and its weights
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,57 +16,40 @@ from numpy.typing import NDArray
 from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.calibration import fit_temperature, softmax
 from lightgesture.models.errors import ModelError
-from lightgesture.models.projection import Described, Progress, describe, fit_projection, in_parts
 from lightgesture.models.samples import CLASSES, TrainingSample
-from lightgesture.models.svm import SvmClassifier
+from lightgesture.models.svm import SvmClassifier, radial_kernel
 from lightgesture.models.svm_file import SvmModel
-from lightgesture.training.svm.descent import DescentSettings, Machine, descend
-from lightgesture.training.svm.fixed_size import fit_fixed_size
+from lightgesture.training.pool.kept_sources import LEAST_FITTED, HeldOut, kept_samples
+from lightgesture.training.pool.patch_kinds import CONTOUR, PATCH, SMALLEST_HAND
+from lightgesture.training.svm.descent import Machine, descend
+from lightgesture.training.svm.projection import ROWS, Described, Progress, describe, fit_projection, in_parts
 
 Float = NDArray[np.float32]
+Double = NDArray[np.float64]
+
+DIMENSIONS: Final = 64
+"""Of the space of the kernel, beside one for each contour number, 16 to 128; more cost time and size."""
+WIDTH: Final = 2.0
+"""At first, gamma times the mean squared distance of two samples, 0.5 to 8; larger is a narrower kernel."""
+RIDGE: Final = 1e-5
+"""At first, weight of the squared norm of the machine against the mean squared error."""
+UNFITTED_TEMPERATURE: Final = 0.42
+"""Of the softmax where too few hands are kept from the machine to fit it: that of the shipped model."""
 
 
 @dataclass(frozen=True, slots=True)
 class SvmSettings:
-    """How the machine is trained.
+    """How the machine is trained."""
 
-    features: how a patch becomes a vector. smallest_hand: longer side of the smallest box that is read, pixels.
-    directions: principal directions of the gradients that the machine learns from, 64 to 512; they cost time in
-        training alone. 0 leaves the gradients out.
-    dimensions: of the space of the kernel, beside one for each contour number, 16 to 128; more cost time and size.
-    contour_weight: variance of the contour numbers against that of the gradients at first, 0 to 1; alone they need
-        any above 0.
-    centres: expansion vectors, 200 to 4000; more read a little better and cost time and size.
-    width: at first, gamma times the mean squared distance of two samples, 0.5 to 8; larger is a narrower kernel.
-    ridge: at first, weight of the squared norm of the machine against the mean squared error.
-    descent: how it is learnt from there.
-    one_in: of so many groups of sources one is kept from the machine, for the temperature and the scores.
-    """
-
-    features: VectorSettings = field(default_factory=VectorSettings)
-    smallest_hand: int = 12
+    features: VectorSettings = field(default_factory=lambda: VectorSettings(patch=PATCH, contour=CONTOUR))
+    """How a patch becomes a vector."""
     directions: int = 256
-    dimensions: int = 64
-    contour_weight: float = 0.15
+    """Principal directions of the gradients that the machine learns from, 64 to 512, which cost time in training alone;
+    0 leaves the gradients out."""
     centres: int = 2000
-    width: float = 2.0
-    ridge: float = 1e-5
-    descent: DescentSettings = field(default_factory=DescentSettings)
-    one_in: int = 12
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class HeldOut:
-    """Answers for samples by a machine that saw none of their sources.
-
-    probabilities: float32 (n, classes). truth: int (n,), index of the class. sources: (n,), names. original: bool
-    (n,), False for altered copies.
-    """
-
-    probabilities: Float
-    truth: NDArray[np.int64]
-    sources: NDArray[np.str_]
-    original: NDArray[np.bool_]
+    """Expansion vectors, 200 to 4000; more read a little better and cost time and size."""
+    steps: int = 40000
+    """Of the descent; accuracy grows to some 40,000. 0 leaves the machine as it starts."""
 
 
 def train_svm(
@@ -79,19 +63,17 @@ def train_svm(
     """Train on samples of at least two of `classes`; the answers are for samples of the sources that are kept out.
 
     Only the principal directions, which know no classes, are those of all samples.
-    The same samples, settings and seed give the same model on one machine with one number of threads.
-    Raises ModelError for a sample of an unknown class or of an unreadable box, for less than two classes, and where so
-    few samples are given that none can be kept out.
+    The same samples, settings and seed give the same model on one machine with one number of threads. Of so few
+    samples that none can be kept out there are no answers, and the temperature is `UNFITTED_TEMPERATURE`.
+    Raises ModelError for a sample of an unknown class or of an unreadable box and for less than two classes.
     """
     settings = settings or SvmSettings()
     progress = progress or _silent
     data = describe(samples, settings.features, classes, progress)
     if len(np.unique(data.truth)) < 2:
         raise ModelError("the samples hold less than two classes; a classifier needs at least two")
-    kept = kept_samples(data.truth, data.sources, settings.one_in)
-    mean, projection = fit_projection(
-        data.vectors, settings.features, settings.directions, settings.contour_weight
-    )
+    kept = kept_samples(data.truth, data.sources, data.hands)
+    mean, projection = fit_projection(data.vectors, settings.features, settings.directions)
     reduced = np.concatenate(
         [((part - mean) @ projection).astype(np.float16) for part in in_parts(data.vectors)]
     )
@@ -101,7 +83,7 @@ def train_svm(
     del data, reduced
     weights = sample_weights(learnt.truth, learnt.sources) * learnt.weights
     machine = _start(learnt, weights, len(classes), settings, seed, progress)
-    machine = descend(machine, learnt.vectors, learnt.truth, weights, settings.descent, seed, progress)
+    machine = descend(machine, learnt.vectors, learnt.truth, weights, settings.steps, seed, progress)
     model = SvmModel(
         classes=tuple(classes),
         features=settings.features,
@@ -113,7 +95,7 @@ def train_svm(
         bias=machine.bias,
         gamma=1.0,
         temperature=1.0,
-        smallest_hand=settings.smallest_hand,
+        smallest_hand=SMALLEST_HAND,
     )
     return _calibrated(model, answered)
 
@@ -127,6 +109,7 @@ def _rows_of(data: Described, chosen: NDArray[np.bool_]) -> Described:
         data.vectors[chosen],
         data.truth[chosen],
         data.sources[chosen],
+        data.hands[chosen],
         data.original[chosen],
         data.weights[chosen],
     )
@@ -145,57 +128,33 @@ def _start(
     contour = block_lengths(settings.features)[1]
     gradients = reduced.shape[1] - contour
     first = np.arange(reduced.shape[1])
-    first = first[(first < settings.dimensions) | (first >= gradients)]
+    first = first[(first < DIMENSIONS) | (first >= gradients)]
     points = np.concatenate([part[:, first] for part in in_parts(reduced)])
-    scale = np.float32(np.sqrt(settings.width / (2.0 * float(points.var(axis=0).sum()))))
+    scale = np.float32(np.sqrt(WIDTH / (2.0 * float(points.var(axis=0).sum()))))
     points *= scale
     random = np.random.default_rng(seed)
     centres = points[np.sort(random.choice(len(points), min(settings.centres, len(points)), replace=False))]
     targets = np.where(truth[:, None] == np.arange(classes), np.float32(1.0), np.float32(-1.0))
-    own, bias = fit_fixed_size(points, centres, 1.0, targets, weights, settings.ridge, progress)
+    own, bias = fit_fixed_size(points, centres, 1.0, targets, weights, RIDGE, progress)
     projection = np.zeros((reduced.shape[1], len(first)), np.float32)
     projection[first, np.arange(len(first))] = scale
     return Machine(projection, centres, own, bias)
 
 
 def _calibrated(model: SvmModel, kept: Described) -> tuple[SvmModel, HeldOut]:
-    """The model with its temperature, and its answers for what was kept from it; the temperature is that of
-    originals where there are any."""
+    """The model with its temperature, and its answers for what was kept from it.
+
+    The temperature is that of the originals; where these are few that of their altered copies, too.
+    """
     classifier = SvmClassifier(model)
-    scores = np.concatenate([classifier.scores(part) for part in in_parts(kept.vectors)])
-    fitting = kept.original if kept.original.any() else np.ones(len(scores), bool)
-    temperature = fit_temperature(scores[fitting], kept.truth[fitting])
+    parts = [classifier.scores(part) for part in in_parts(kept.vectors)]
+    scores = np.concatenate([np.empty((0, len(model.classes)), np.float32), *parts])
+    fitting = kept.original if kept.original.sum() >= LEAST_FITTED else np.ones(len(scores), bool)
+    temperature = UNFITTED_TEMPERATURE
+    if fitting.sum() >= LEAST_FITTED:
+        temperature = fit_temperature(scores[fitting], kept.truth[fitting])
     answers = HeldOut(softmax(scores, temperature), kept.truth, kept.sources, kept.original)
     return replace(model, temperature=temperature), answers
-
-
-def kept_samples(truth: NDArray[np.int64], sources: NDArray[np.str_], one_in: int) -> NDArray[np.bool_]:
-    """Which samples are kept from the machine, bool (n,): one of so many folds of the sources, less those that alone
-    show a class. Where these are all, one sample in so many. Raises ModelError where nothing is left to keep."""
-    for folds in (assign_folds(sources, one_in), np.arange(len(truth)) % one_in):
-        kept = folds == one_in - 1
-        kept &= np.isin(truth, truth[~kept])
-        if kept.any():
-            return np.asarray(kept)
-    raise ModelError(
-        f"{len(truth)} samples are too few: one in {one_in} is kept from the machine; give more of each class"
-    )
-
-
-def assign_folds(sources: NDArray[np.str_], folds: int) -> NDArray[np.int64]:
-    """Fold of each sample, int (n,): whole sources, the largest first into the emptiest fold.
-
-    With fewer sources than folds, samples are dealt out in turn instead.
-    """
-    names, members, sizes = np.unique(sources, return_inverse=True, return_counts=True)
-    if len(names) < folds:
-        return np.arange(len(sources)) % folds
-    fold_of = np.zeros(len(names), np.int64)
-    filled = np.zeros(folds)
-    for source in np.argsort(-sizes, kind="stable"):
-        fold_of[source] = filled.argmin()
-        filled[fold_of[source]] += sizes[source]
-    return np.asarray(fold_of[members.reshape(-1)])
 
 
 def sample_weights(truth: NDArray[np.int64], sources: NDArray[np.str_]) -> Float:
@@ -210,3 +169,44 @@ def sample_weights(truth: NDArray[np.int64], sources: NDArray[np.str_]) -> Float
     for label in np.unique(truth):
         weights[truth == label] /= np.sqrt(weights[truth == label].sum())
     return np.asarray(weights / weights.mean(), np.float32)
+
+
+def kernel_basis(centres: Float, gamma: float) -> Double:
+    """Kernel values at the centres times this (m, r) are the features of the machine: K^(-1/2), rank r."""
+    values, vectors = np.linalg.eigh(radial_kernel(centres, centres, gamma).astype(np.float64))
+    kept = values > 1e-6 * values[-1]
+    return np.asarray(vectors[:, kept] / np.sqrt(values[kept]))
+
+
+def fit_fixed_size(
+    points: Float,
+    centres: Float,
+    gamma: float,
+    targets: Float,
+    sample_weights: Float,
+    ridge: float,
+    progress: Progress,
+) -> tuple[Float, Float]:
+    """Weights of the centres, float32 (m, k), and bias (k,), that are best in the weighted least squares.
+
+    points: (n, p). targets: (n, k). sample_weights: (n,). ridge: weight of the squared norm of the machine against
+    the mean squared error.
+    """
+    basis = kernel_basis(centres, gamma)
+    single = basis.astype(np.float32)
+    size = basis.shape[1] + 1
+    squares, products = np.zeros((size, size)), np.zeros((size, targets.shape[1]))
+    for start in range(0, len(points), ROWS):
+        rows = slice(start, start + ROWS)
+        features = radial_kernel(points[rows], centres, gamma) @ single
+        # A column of ones for the bias.
+        features = np.concatenate([features, np.ones((len(features), 1), np.float32)], axis=1)
+        weighted = (features * sample_weights[rows, None]).T
+        squares += weighted @ features
+        products += weighted @ targets[rows]
+        progress("sum over samples", min(start + ROWS, len(points)), len(points))
+    penalty = np.full(size, ridge * float(sample_weights.sum()))
+    penalty[-1] = 1e-9
+    squares[np.diag_indices_from(squares)] += penalty
+    solution = np.linalg.solve(squares, products)
+    return (basis @ solution[:-1]).astype(np.float32), solution[-1].astype(np.float32)

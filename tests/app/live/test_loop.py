@@ -59,7 +59,7 @@ class Scene:
         def play():
             for index, content in enumerate(contents):
                 self.box.put(Snapshot(content, index, index / 10))
-                while self.box._newest is not None:
+                while not self.box.is_empty:
                     time.sleep(0.001)
                 time.sleep(gap_s)
             self.box.close()

@@ -1,5 +1,6 @@
 """Reading, breaking off and opening again."""
 
+import threading
 import time
 
 import pytest
@@ -113,7 +114,7 @@ def test_a_defect_reaches_the_one_who_decodes():
 
 
 def test_stopping_ends_the_wait_for_the_next_try():
-    said = []
+    said, before = [], set(threading.enumerate())
     reader = Reader(FakeStream(), Mailbox(), time.monotonic, said.append, Backoff(60, 60))
     reader.start()
     while not said:
@@ -121,4 +122,4 @@ def test_stopping_ends_the_wait_for_the_next_try():
     start = time.monotonic()
     reader.stop()
     assert time.monotonic() - start < 0.5
-    assert not reader._thread.is_alive()
+    assert set(threading.enumerate()) <= before

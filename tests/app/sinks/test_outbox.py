@@ -104,7 +104,7 @@ def test_a_sink_that_blocks_delays_nobody_and_the_oldest_is_dropped(heartbeat):
     outbox = Outbox(sink, messages.append, quick())
     outbox.start()
     outbox.put(heartbeat(0))
-    wait_for(lambda: not outbox._queue)  # the first is being sent
+    wait_for(lambda: not outbox.waiting)  # the first is being sent
     start = time.monotonic()
     for frames in range(1, 1001):
         outbox.put(heartbeat(frames))
@@ -166,7 +166,7 @@ def test_the_end_does_not_wait_for_a_sink_that_blocks(heartbeat, monkeypatch):
     outbox = Outbox(sink, messages.append)
     outbox.start()
     outbox.put(heartbeat(1))
-    wait_for(lambda: not outbox._queue)  # the first is being sent
+    wait_for(lambda: not outbox.waiting)  # the first is being sent
     outbox.put(heartbeat(2))
     outbox.stop()
     sink.may_send.set()

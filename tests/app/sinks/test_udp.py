@@ -55,6 +55,9 @@ class FailingSocket:
     def __init__(self, number):
         self.number = number
 
+    def setsockopt(self, *option):
+        pass
+
     def sendto(self, content, address):
         raise OSError(self.number, "the reason")
 
@@ -63,9 +66,10 @@ class FailingSocket:
     ("number", "kind"),
     [(errno.ENETUNREACH, SinkError), (errno.EMSGSIZE, RecordError), (errno.EPERM, SinkError)],
 )
-def test_what_cannot_be_sent(instruction, number, kind):
+def test_what_cannot_be_sent(instruction, number, kind, monkeypatch):
+    monkeypatch.setattr(socket, "socket", lambda *_: FailingSocket(number))
     sink = UdpSink("127.0.0.1", 9)
-    sink._socket = FailingSocket(number)
+    sink.open()
     with pytest.raises(kind, match=r"^udp 127"):
         sink.send(instruction())
 

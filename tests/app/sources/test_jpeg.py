@@ -60,4 +60,4 @@ def test_memory_is_bounded():
     endless = FILES[0][:-2]
     for _ in range(50):
         assert splitter.feed(endless[:2] + b"\xff\xfe\xff\xff" + b"a" * 4000) == []
-        assert len(splitter._buffer) <= 10_000
+        assert splitter.held <= 10_000

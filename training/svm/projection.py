@@ -1,4 +1,4 @@
-"""What the training of the support vector machine computes with: samples as vectors, and their main directions."""
+"""Samples as vectors, and the main directions of these, in which the support vector machine begins."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.vector import VectorSettings, block_lengths, feature_vectors
-from lightgesture.models.errors import ModelError
-from lightgesture.models.samples import TrainingSample
+from lightgesture.models import ModelError, TrainingSample
 
 Float = NDArray[np.float32]
 Double = NDArray[np.float64]
@@ -19,18 +18,22 @@ Progress = Callable[[str, int, int], None]
 CHUNK = 64
 """Patches described at once: more do not fit the processor's cache and take longer each."""
 
+CONTOUR_WEIGHT = 0.15
+"""Variance of the contour numbers against that of the gradients at first, 0 to 1."""
+
 ROWS = 4096
 """Rows held at once in single precision, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Described:
-    """Samples. vectors: (n, d). truth: int (n,), index of the class. sources: (n,), names. original: bool (n,).
-    weights: float32 (n,)."""
+    """Samples. vectors: (n, d). truth: int (n,), index of the class. sources: (n,), names. hands: int (n,), numbers of
+    the hands, -1 for none. original: bool (n,). weights: float32 (n,)."""
 
     vectors: NDArray[np.float16]
     truth: NDArray[np.int64]
     sources: NDArray[np.str_]
+    hands: NDArray[np.int64]
     original: NDArray[np.bool_]
     weights: Float
 
@@ -44,6 +47,7 @@ def describe(
     patches: list[NDArray[np.uint8]] = []
     truth: list[int] = []
     sources: list[str] = []
+    hands: list[int] = []
     original: list[bool] = []
     weights: list[float] = []
     for sample in samples:
@@ -55,6 +59,7 @@ def describe(
             raise ModelError(f"{sample.source}: {error}; correct the sample") from error
         truth.append(index[sample.token])
         sources.append(sample.source)
+        hands.append(sample.hand)
         original.append(sample.original)
         weights.append(sample.weight)
         if len(patches) == CHUNK:
@@ -69,6 +74,7 @@ def describe(
         np.concatenate(vectors),
         np.array(truth),
         np.array(sources),
+        np.array(hands),
         np.array(original),
         np.array(weights, np.float32),
     )
@@ -81,11 +87,11 @@ def in_parts(rows: NDArray[np.float16]) -> Iterator[Float]:
 
 
 def fit_projection(
-    vectors: NDArray[np.float16], features: VectorSettings, directions: int, contour_weight: float
+    vectors: NDArray[np.float16], features: VectorSettings, directions: int
 ) -> tuple[Float, Float]:
     """Mean (d,) and projection (d, p): principal directions of the gradients, then the scaled contour numbers.
 
-    directions, contour_weight: see `SvmSettings`.
+    directions: see `SvmSettings`.
     """
     gradients, contour = block_lengths(features)
     mean = vectors.mean(axis=0, dtype=np.float64)
@@ -93,7 +99,7 @@ def fit_projection(
     kept = len(variances)
     deviation = vectors[:, gradients:].std(axis=0, dtype=np.float64)
     spread = float(variances.sum()) if kept else 1.0
-    scale = np.sqrt(contour_weight * spread / contour) / np.maximum(deviation, 1e-6)
+    scale = np.sqrt(CONTOUR_WEIGHT * spread / contour) / np.maximum(deviation, 1e-6)
     projection = np.zeros((gradients + contour, kept + contour))
     projection[:gradients, :kept] = main
     projection[gradients:, kept:] = np.diag(np.where(deviation > 1e-6, scale, 0.0))

@@ -11,7 +11,7 @@ from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
-from lightgesture.front_end import FrontEnd
+from lightgesture.front_end import FrontEnd, StageClock
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
 from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
@@ -19,7 +19,6 @@ from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord
-from lightgesture.stage_clock import StageClock
 from lightgesture.threads import OneBlasThread
 
 

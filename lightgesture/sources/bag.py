@@ -28,8 +28,8 @@ from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.types import Source
 
 _METADATA, _METADATA_KEY, _METADATA_BYTES = "metadata.yaml", b"rosbag2_bagfile_information", 4096
-_YEAR_2000_NS = 946_684_800 * NANOSECONDS
-"""A clock that is before it is that of a simulation, or counts from the start of a machine."""
+_YEAR_2000_S, _YEAR_2100_S = 946_684_800, 4_102_444_800
+"""A clock before or after tells no time of day: it is that of a simulation, or counts from the start of a machine."""
 
 
 def is_bag(path: str) -> bool:
@@ -63,13 +63,18 @@ class _Entry(NamedTuple):
     recorded_ns: int
     message: PictureMessage | ValueError
 
+    @property
+    def stamp_ns(self) -> int:
+        """Of its header, 0 where it has none."""
+        return self.message.stamp_ns if isinstance(self.message, PictureMessage) else 0
+
 
 class BagFile(Source):
     """The images of one topic of a bag, in the order in which they were recorded: pictures, or packets of a video.
 
     topic: its name; None takes the only image topic there is. The clock is that of the headers of its messages, or,
-    where most have none, the times at which they were recorded; seconds from the first frame. start_utc: the moment of
-    it, None for a clock of its own. Messages that hold no picture are left out; after the last one InputError tells how
+    where most have none, the times at which they were recorded; seconds from the first message. start_utc: the
+    moment of it. Messages that hold no picture are left out; after the last one InputError tells how
     many, and whether the bag is damaged or was cut off. InputError when opened: no bag, no such topic, no image topic
     or several of them.
     """
@@ -77,24 +82,32 @@ class BagFile(Source):
     def __init__(self, path: str, topic: str | None = None) -> None:
         self.name = path
         self.start_utc: datetime | None = None
-        self._start_ns: int | None = None
         self._damage: str | None = None
         self._left_out: list[str] = []
         self._given = 0
         self._bag = Bag(path)
         try:
             self._topic = _choose(self._bag, path, topic)
-            if self._bag.remark is not None:
-                say(f"{path}: {self._bag.remark}")
-            counts = [count for one, count in self._bag.channels.items() if one.topic == self._topic]
-            self.frame_count = sum(counts)
-            self._entries = self._read()
-            self._first = list(islice(self._entries, LOOKED_AT))
+            self._begin()
         except BaseException:
             self._bag.close()
             raise
-        stamps = [one.message.stamp_ns for one in self._first if isinstance(one.message, PictureMessage)]
-        self._clock = BagClock(has_stamps(stamps))
+
+    def _begin(self) -> None:
+        if self._bag.remark is not None:
+            say(f"{self.name}: {self._bag.remark}")
+        self.frame_count = sum(n for one, n in self._bag.channels.items() if one.topic == self._topic)
+        self._entries = self._read()
+        self._first = list(islice(self._entries, LOOKED_AT))
+        self._clock = BagClock(has_stamps([one.stamp_ns for one in self._first]))
+        if self._first:
+            first = self._first[0]
+            stamped = next((one for one in self._first if one.stamp_ns > 0), first)
+            stamp_ns = stamped.stamp_ns - (stamped.recorded_ns - first.recorded_ns)
+            self._clock.start(stamp_ns, first.recorded_ns)
+            moment_ns = stamp_ns if _is_day(stamp_ns) else first.recorded_ns
+            if _is_day(moment_ns):
+                self.start_utc = datetime.fromtimestamp(moment_ns / NANOSECONDS, UTC)
 
     def close(self) -> None:
         """Close the bag."""
@@ -103,9 +116,9 @@ class BagFile(Source):
     def __iter__(self) -> Iterator[Frame]:
         depth = depth_of(self.name)
         decoder: PacketDecoder | None = None
-        for index, kind, recorded_ns, message in chain(self._first, self._entries):
-            stamp_ns = message.stamp_ns if isinstance(message, PictureMessage) else 0
-            time_ns = self._clock.read(stamp_ns, recorded_ns)
+        for entry in chain(self._first, self._entries):
+            index, kind, recorded_ns, message = entry
+            time_ns = self._clock.read(entry.stamp_ns, recorded_ns)
             try:
                 if isinstance(message, ValueError):
                     raise message
@@ -132,11 +145,7 @@ class BagFile(Source):
 
     def _frame(self, image: Image, index: int, time_ns: int) -> Frame:
         self._given += 1
-        if self._start_ns is None:
-            self._start_ns = time_ns
-            if time_ns >= _YEAR_2000_NS:
-                self.start_utc = datetime.fromtimestamp(time_ns / NANOSECONDS, UTC)
-        return Frame(image, index, round((time_ns - self._start_ns) / NANOSECONDS, 6))
+        return Frame(image, index, round(time_ns / NANOSECONDS, 6))
 
     def _read(self) -> Iterator[_Entry]:
         index = 0
@@ -148,6 +157,9 @@ class BagFile(Source):
                     index += 1
         except ScanError as error:
             self._damage = str(error)
+        else:
+            if self.frame_count is not None and index < self.frame_count:
+                self._damage = f"is damaged and lacks {self.frame_count - index} of its messages"
 
     def _check_end(self) -> None:
         """InputError: not all could be read."""
@@ -161,6 +173,10 @@ class BagFile(Source):
             wrong.append(f"{count}; the first: {self._left_out[0]}")
         if wrong:
             raise InputError(f"{self.name}: {'; '.join(wrong)}")
+
+
+def _is_day(moment_ns: int) -> bool:
+    return _YEAR_2000_S <= moment_ns / NANOSECONDS < _YEAR_2100_S
 
 
 def _parse(kind: str, data: bytes, written: str) -> PictureMessage | ValueError:

@@ -17,11 +17,12 @@ was set; a simulation may well get on slower, but hardly faster by so much."""
 def has_stamps(stamps_ns: Sequence[int]) -> bool:
     """Whether the headers have a clock, by the stamps of the first messages: most are there and get on."""
     there = [stamp for stamp in stamps_ns if stamp > 0]
-    return 2 * len(there) > len(stamps_ns) and all(a < b for a, b in pairwise(there))
+    steps = [after - before for before, after in pairwise(there)]
+    return 2 * len(there) > len(stamps_ns) and 2 * sum(step > 0 for step in steps) > len(steps)
 
 
 class BagClock:
-    """Nanoseconds of message after message, never less than before.
+    """Nanoseconds of message after message since the first, never less than before.
 
     by_header: the clock is that of the headers; where a message has no stamp, or one from a clock that was set, the
     time goes on by that of the recording.
@@ -29,27 +30,25 @@ class BagClock:
 
     def __init__(self, by_header: bool) -> None:
         self._by_header = by_header
-        self._offset_ns = 0
-        self._time_ns: int | None = None
-        self._recorded_ns = 0
+        self._time_ns = self._start_ns = self._recorded_ns = 0
+
+    def start(self, stamp_ns: int, recorded_ns: int) -> None:
+        """Begin at a message; what `read` takes. Without it the clock begins at 0."""
+        self._start_ns = stamp_ns if self._by_header else recorded_ns
+        self._recorded_ns = recorded_ns
 
     def read(self, stamp_ns: int, recorded_ns: int) -> int:
         """The time of the next message; stamp_ns: 0 where it has none."""
         step_ns = max(0, recorded_ns - self._recorded_ns)
         self._recorded_ns = recorded_ns
-        if not self._by_header:
-            stamp_ns = recorded_ns
-        self._time_ns = self._next(stamp_ns, step_ns)
+        self._time_ns = self._next(stamp_ns if self._by_header else recorded_ns, step_ns)
         return self._time_ns
 
     def _next(self, stamp_ns: int, step_ns: int) -> int:
-        if self._time_ns is None:
-            return stamp_ns
         if stamp_ns <= 0:
             return self._time_ns + step_ns
-        time_ns = stamp_ns + self._offset_ns
+        time_ns = stamp_ns - self._start_ns
         if self._time_ns - NANOSECONDS < time_ns <= self._time_ns + step_ns + JUMP_NS:
             return max(time_ns, self._time_ns)  # some drivers swap neighbours
-        time_ns = self._time_ns + step_ns
-        self._offset_ns = time_ns - stamp_ns
-        return time_ns
+        self._start_ns = stamp_ns - self._time_ns - step_ns
+        return self._time_ns + step_ns

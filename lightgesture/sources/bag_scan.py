@@ -187,6 +187,8 @@ class _Mcap(_Records):
 
     def records(self, stream: BinaryIO, is_chunk: bool) -> Iterator[Message]:
         while kind := stream.read(1):
+            if kind == b"\0":  # no kind of record
+                raise ScanError("is damaged")
             content, is_cut = _block(stream, "<Q")
             if kind[0] == _MCAP_CHUNK and len(content) >= 40 and not is_chunk:
                 (size,) = struct.unpack_from("<Q", content, 16)

@@ -65,7 +65,7 @@ class Bag:
             try:
                 for connection, recorded_ns, data in self._reader.messages(wanted):
                     given += 1
-                    yield channels[id(connection)], recorded_ns, data
+                    yield channels[id(connection)], recorded_ns, _plain(data)
             except Exception:  # as above, for a damaged place: what lies behind it needs no index
                 pass
             else:

@@ -73,14 +73,14 @@ def _unpack(message: Any) -> NDArray[Any]:
     data = np.frombuffer(message.data, np.uint8)
     if layout.rows != 1.0 and (width % 2 or height % 2):
         raise ValueError(f"has {width} x {height} pixels, and {message.encoding} needs even numbers")
-    height = round(height * layout.rows)
-    if not row or not height or step < row or data.size < height * step:
+    lines = round(height * layout.rows)
+    if not row or not lines or step < row or data.size < lines * step:
         raise ValueError(f"holds {data.size} bytes, too few for {width} x {height} {message.encoding}")
-    rows = np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :row])
+    rows = np.ascontiguousarray(data[: lines * step].reshape(lines, step)[:, :row])
     if layout.bits == 16:
         is_swapped = bool(message.is_bigendian) != (sys.byteorder == "big")
         values: NDArray[Any] = rows.view(np.uint16)
         rows = values.byteswap() if is_swapped else values
-    shape = (height, width) if layout.channels == 1 else (height, width, layout.channels)
+    shape = (lines, width) if layout.channels == 1 else (lines, width, layout.channels)
     image: NDArray[Any] = rows.reshape(shape)
     return image if layout.conversion is None else cv2.cvtColor(image, layout.conversion)

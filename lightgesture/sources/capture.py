@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Self
-from urllib.parse import urlsplit, urlunsplit
 
 import cv2
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
+from lightgesture.sources.address import hide_login, split_address
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.types import LiveSource, SourceOptions
 
@@ -88,29 +88,20 @@ def open_camera(name: str, options: SourceOptions) -> CaptureStream:
 
 def open_network(address: str) -> CaptureStream:
     """A stream that FFmpeg reads, such as RTSP or H.264 over UDP, not yet opened."""
-    name = hide_login(address)
-    if not urlsplit(address).netloc:
-        raise UsageError(f"{name}: names no host; write {address.partition(':')[0]}://HOST:PORT/PATH")
-    return CaptureStream(name, address, cv2.CAP_FFMPEG, _timeouts())
+    return CaptureStream(split_address(address).name, address, cv2.CAP_FFMPEG, _timeouts())
 
 
 def open_gstreamer(line: str) -> CaptureStream:
     """A GStreamer pipeline that ends in `appsink`, not yet opened. UsageError: OpenCV was built without GStreamer."""
-    if cv2.CAP_GSTREAMER not in cv2.videoio_registry.getStreamBackends():
+    name = hide_login(line)
+    registry = cv2.videoio_registry
+    # Some builds know of it as a plug-in that is not there.
+    if cv2.CAP_GSTREAMER not in registry.getStreamBackends() or not registry.hasBackend(cv2.CAP_GSTREAMER):
         raise UsageError(
-            f"{line}: this OpenCV has no GStreamer; use the system's OpenCV package, or send the pictures to "
+            f"{name}: this OpenCV has no GStreamer; use the system's OpenCV package, or send the pictures to "
             "standard input as MJPEG"
         )
-    return CaptureStream(line, line, cv2.CAP_GSTREAMER, _timeouts())
-
-
-def hide_login(address: str) -> str:
-    """The address without user and password. UsageError: it is no address."""
-    try:
-        parts = urlsplit(address)
-    except ValueError as error:
-        raise UsageError(f"{address}: is no address ({error}); write it as rtsp://HOST:PORT/PATH") from None
-    return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
+    return CaptureStream(name, line, cv2.CAP_GSTREAMER, _timeouts())
 
 
 def _timeouts() -> list[int]:

@@ -3,10 +3,12 @@
 import glob
 import os
 import stat
+import sys
 from collections.abc import Callable, Iterable
 
 from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
+from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder, natural_key
@@ -16,11 +18,11 @@ from lightgesture.sources.types import LiveSource, Source, SourceOptions
 from lightgesture.sources.video import VideoFile
 
 
-def _http_stream(address: str, _: SourceOptions) -> LiveSource:
+def _http_stream(address: str, options: SourceOptions) -> LiveSource:
     # HTTP and its encryption take time and memory that only who reads such a stream should pay for.
     from lightgesture.sources.http_stream import HttpStream
 
-    return HttpStream(address)
+    return HttpStream(address, options.insecure)
 
 
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
@@ -79,6 +81,15 @@ def live_source(name: str, options: SourceOptions) -> LiveSource:
     return LIVE_SOURCES[_live_kind(name)](name, options)
 
 
+def refuse_missing_device(name: str) -> None:
+    """UsageError: a camera that this machine does not have, which waiting brings only if somebody plugs it in."""
+    is_index = name.isdecimal() and sys.platform == "linux"
+    device = f"/dev/video{int(name)}" if is_index else name
+    if (is_index or name.startswith("/dev/")) and not os.path.exists(device):
+        there = ", ".join(sorted(glob.glob("/dev/video*"), key=natural_key)) or "no camera at all"
+        raise UsageError(f"{name}: no such device; this machine has {there}")
+
+
 def open_any(name: str, options: SourceOptions) -> Source:
     """Open what `open_source` opens, or make frames of what `live_source` reads; errors are those of these two.
 
@@ -103,7 +114,7 @@ def _kind(name: str) -> str:
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
     if "://" in name:
-        raise InputError(f"{name}: is a stream; decode it with `lightgesture live`")
+        raise InputError(f"{hide_login(name)}: is a stream; decode it with `lightgesture live`")
     if glob.has_magic(name):
         raise InputError(f"{name}: matches no file; check the pattern")
     raise InputError(f"{name}: no such file or folder; check the name")
@@ -116,8 +127,8 @@ def _live_kind(name: str) -> str:
     if os.path.exists(name):
         raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
     raise UsageError(
-        f"{name}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), a GStreamer pipeline "
-        "or - for standard input"
+        f"{hide_login(name)}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), "
+        "a GStreamer pipeline or - for standard input"
     )
 
 

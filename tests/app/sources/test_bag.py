@@ -371,7 +371,7 @@ def test_a_damaged_chunk_is_left_out(make_bag, kind):
     frames = []
     with (
         open_source(path) as source,
-        pytest.raises(InputError, match="the bag is damaged (in 1 place|and lacks 2)"),
+        pytest.raises(InputError, match=r"the bag is damaged (in 1 place|and lacks 2)"),
     ):
         frames.extend(source)
     assert [frame.time_s for frame in frames] == [0.0, 0.3]

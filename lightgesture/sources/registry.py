@@ -12,6 +12,7 @@ from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
 from lightgesture.sources.folder import FrameFolder, natural_key
+from lightgesture.sources.rtp import RtpStream, read_description
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source, SourceOptions
@@ -25,6 +26,9 @@ def _http_stream(address: str, options: SourceOptions) -> LiveSource:
     return HttpStream(address, options.insecure)
 
 
+DESCRIPTION_SUFFIX = ".sdp"
+"""Ending of a file that describes a stream."""
+
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
     "folder": lambda path, options: FrameFolder(path, options.fps),
@@ -37,7 +41,9 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
     "http": _http_stream,
+    "description": lambda path, _: read_description(path),
     "network": lambda address, _: open_network(address),
+    "rtp": lambda address, _: RtpStream(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
 """Kind of stream to what reads it, given its name and what the user says about it."""
@@ -96,7 +102,8 @@ def open_any(name: str, options: SourceOptions) -> Source:
     A stream is a `StreamFrames`, and is opened by its `with` block. What is there as a file or a folder is taken for
     one, and standard input for a recording.
     """
-    is_recording = name == STANDARD_INPUT or os.path.isfile(name) or os.path.isdir(name)
+    is_file = os.path.isfile(name) and not name.lower().endswith(DESCRIPTION_SUFFIX)
+    is_recording = name == STANDARD_INPUT or is_file or os.path.isdir(name)
     if is_recording or (_stream_kind(name) is None and "://" not in name):
         return open_source(name, options.fps, size=options.size, topic=options.topic)
     return StreamFrames(live_source(name, options))
@@ -110,6 +117,8 @@ def _kind(name: str) -> str:
     if os.path.isdir(name):
         return "folder"
     if os.path.isfile(name):
+        if name.lower().endswith(DESCRIPTION_SUFFIX):
+            raise InputError(f"{name}: describes a stream; decode it with `lightgesture live`")
         return "video"
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
@@ -127,7 +136,7 @@ def _live_kind(name: str) -> str:
     if os.path.exists(name):
         raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
     raise UsageError(
-        f"{hide_login(name)}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), "
+        f"{hide_login(name)}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://, rtp://), "
         "a GStreamer pipeline or - for standard input"
     )
 
@@ -137,8 +146,12 @@ def _stream_kind(name: str) -> str | None:
     scheme = name.partition("://")[0].lower() if "://" in name else ""
     if scheme in ("http", "https"):
         return "http"
+    if scheme == "rtp":
+        return "rtp"
     if scheme in NETWORK_SCHEMES:
         return "network"
+    if name.lower().endswith(DESCRIPTION_SUFFIX):
+        return "description"
     if " ! " in name:
         return "gstreamer"
     if name.isdecimal() or _is_device(name) or name.startswith("/dev/"):

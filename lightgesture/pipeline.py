@@ -5,14 +5,16 @@ from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
 from datetime import datetime
-from typing import Self
+from typing import Any, Self
+
+from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import RegionStage, SelectorName
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
-from lightgesture.front_end import FrontEnd
-from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
+from lightgesture.front_end import FrontEnd, StageClock
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
 from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
@@ -25,6 +27,8 @@ from lightgesture.threads import OneBlasThread
 
 class Pipeline:
     """Decodes one stream of frames; make another for another stream, or take `for_stream`.
+
+    As a context manager it lets go of what it has loaded when its block ends.
 
     front, decoder: the two halves; None: what the options below make.
 
@@ -108,6 +112,16 @@ class Pipeline:
         self._frames, self._one_thread = frames, OneBlasThread()
         self._begin(source, debug)
 
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of the nets; what is asked to decode after raises ValueError. Others of `for_stream` go on."""
+        self.front = _ClosedFront(self.front.clock)
+
     def check_language(self) -> str | None:
         """A line that warns of signs that the grammar does not know; None where it knows all that is read.
 
@@ -135,7 +149,7 @@ class Pipeline:
         self._seconds = 0.0
         self._counts = {Instruction: 0, Rejected: 0}
 
-    def process(self, image_bgr: Image, time_s: float, index: int | None = None) -> list[Record]:
+    def process(self, image_bgr: NDArray[Any], time_s: float, index: int | None = None) -> list[Record]:
         """Records of the next frame: its frame record, then what it led to.
 
         image_bgr: uint8 (height, width, 3), BGR; another size than before ends the tracks. time_s: seconds since
@@ -181,7 +195,7 @@ class Pipeline:
         )
         return [*pending, summary]
 
-    def recognize(self, image_bgr: Image) -> FrameRecord:
+    def recognize(self, image_bgr: NDArray[Any]) -> FrameRecord:
         """The signs in a single picture, without memory: `frame` and `time_s` are None."""
         with self._one_thread.block():
             self.front.recognize(image_bgr)
@@ -221,6 +235,16 @@ def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:
     """How hands are read for a rule: "sentence" wants to know where the extents of a hand differ."""
     settings = ReadingSettings(extents="mean" if rule == SENTENCE else "clearest")
     return settings if threshold is None else replace(settings, token_probability=threshold)
+
+
+class _ClosedFront(FrontEnd):
+    """Stands in the place of one that was let go."""
+
+    def __init__(self, clock: StageClock) -> None:
+        self.clock = clock
+
+    def process(self, image: Image, time_s: float) -> Signs:  # noqa: ARG002 - those of its base
+        raise ValueError("this pipeline is closed; make another")
 
 
 def _refuse(half: str, is_given: Mapping[str, bool]) -> None:

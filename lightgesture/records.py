@@ -7,7 +7,7 @@ Every record is frozen, has `type`, and `to_dict()` gives the object that `--jso
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime, timedelta
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from lightgesture.features.types import Box
 from lightgesture.fsm import Event
@@ -59,7 +59,7 @@ class FrameRecord:
     probabilities: whether the record has those of the hands, which the rule "sentence" reads.
     """
 
-    type: str = field(default="frame", init=False)
+    type: Literal["frame"] = field(default="frame", init=False)
     source: str | None
     frame: int | None
     time_s: float | None
@@ -87,7 +87,7 @@ class SummaryRecord:
     median milliseconds of each stage.
     """
 
-    type: str = field(default="summary", init=False)
+    type: Literal["summary"] = field(default="summary", init=False)
     source: str | None
     utc: str | None = None
     frames: int
@@ -111,7 +111,7 @@ class HeartbeatRecord:
     heartbeat; 0 where none came. state: "idle" or "collecting", the decoder's.
     """
 
-    type: str = field(default="heartbeat", init=False)
+    type: Literal["heartbeat"] = field(default="heartbeat", init=False)
     source: str | None
     time_s: float
     utc: str | None = None

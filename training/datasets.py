@@ -7,7 +7,6 @@ in an unmirrored picture of a diver with two hands the image-left hand is the di
 beside the labels is not counted as wrong.
 """
 
-import csv
 import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError
 from lightgesture.features.types import Box
+from lightgesture.training.tables import table_rows
 
 DATA_FOLDER = Path("shared") / "data"
 """Where the data lie beside the checkout, or beside the current directory."""
@@ -82,17 +82,10 @@ def find_data(folder: str | Path | None = None) -> Path:
 
 def read_table(data: Path, name: str) -> list[dict[str, str]]:
     """Rows of a CSV table with a header, by its path under the data folder."""
-    path = data / name
-    try:
-        with path.open(encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(
-            f"{path}: cannot be read ({reason}); --data must name a complete data folder"
-        ) from error
+    remedy = "--data must name a complete data folder"
+    rows = [row for _, row in table_rows(data / name, (), remedy)]
     if not rows:
-        raise InputError(f"{path}: holds no rows; --data must name a complete data folder")
+        raise InputError(f"{data / name}: holds no rows; {remedy}")
     return rows
 
 

@@ -8,7 +8,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from lightgesture.features.find.settings import ALONE_CONFIDENCE, CLASSICAL, LEA
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
-from lightgesture.features.types import Box, Candidates, HandRegion, Image, Side
+from lightgesture.features.types import Box, Candidates, HandRegion, Side
 
 SelectorName = Literal["learned", "classical"]
 SELECTORS: tuple[SelectorName, ...] = ("learned", "classical")
@@ -94,7 +94,7 @@ def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegio
 
 
 def find_hands(
-    image: Image, *, mirrored: bool = False, selector: SelectorName = "learned"
+    image: NDArray[Any], *, mirrored: bool = False, selector: SelectorName = "learned"
 ) -> list[HandRegion]:
     """The hands of one picture, without memory.
 

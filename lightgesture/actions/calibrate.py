@@ -30,7 +30,7 @@ def run_calibrate(
     that separates poorly too. InputError: there are no hands, or it separates poorly. UsageError: `hands` or `out`.
     """
     file, place = _out(out), _place(hands)
-    options = SourceOptions(settings.fps, settings.width_height, settings.topic)
+    options = SourceOptions(settings.fps, settings.width_height, settings.topic, settings.insecure)
     with open_any(source_name, options) as source:
         if isinstance(source, StreamFrames):
             say(f"{source.name}: hold both open hands still before the camera for {seconds:g} s")

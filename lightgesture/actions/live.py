@@ -18,7 +18,7 @@ from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink, print_unbuffered
-from lightgesture.sources import SourceOptions, live_source
+from lightgesture.sources import SourceOptions, live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -37,10 +37,12 @@ def run_live(
     """Decode a stream until it ends for good, nobody takes the records any more, or a signal asks for the end.
 
     OK, also after SIGTERM, for a service that is asked to stop has not failed; INTERRUPTED after Ctrl-C; SOME_FAILED
-    if the reader of standard output went away and nobody else takes the records, or not one picture could be decoded.
+    if the reader of standard output went away and nobody else takes the records, the stream was given up, or not one
+    picture could be decoded.
     UsageError: the source, an option, the model or the grammar is wrong.
     """
-    source = live_source(source_name, SourceOptions(size=settings.width_height))
+    refuse_missing_device(source_name)
+    source = live_source(source_name, SourceOptions(size=settings.width_height, insecure=settings.insecure))
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()
@@ -51,7 +53,7 @@ def run_live(
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
         outboxes = [Outbox(sink, report) for sink in sinks]
-        reader = Reader(source, mailbox, clock, report)
+        reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
         parts: list[Outbox | Reader] = [*outboxes, reader]
         for part in parts:
             part.start()
@@ -72,7 +74,7 @@ def run_live(
         loop.run(stopping)
     if not settings.quiet:
         say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
-    return _status(loop, outboxes, stopping)
+    return ExitStatus.SOME_FAILED if reader.has_given_up else _status(loop, outboxes, stopping)
 
 
 def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:

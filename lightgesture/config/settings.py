@@ -19,6 +19,9 @@ MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
 """Least and greatest caution, as a grammar file may ask for."""
 
+MAX_GIVE_UP_S = 86_400.0
+"""Longest wait for a picture after which `live` gives up, seconds: a day."""
+
 MAX_FPS = 1000.0
 """Highest rate of a folder of frames, frames a second."""
 
@@ -161,6 +164,24 @@ class DecodeSettings(BaseModel):
     )
     topic: str | None = _option(
         None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE, CALIBRATE), min_length=1
+    )
+    insecure: bool = _option(
+        False, "take a camera's own certificate for https, which nobody vouches for", only=(LIVE, CALIBRATE)
+    )
+    give_up: float | None = _option(
+        None,
+        "end after so many seconds without a picture, with exit status 1 (default: try for ever)",
+        "S",
+        only=(LIVE,),
+        gt=0,
+        le=MAX_GIVE_UP_S,
+        allow_inf_nan=False,
+    )
+    recursive: bool = _option(False, "videos in the folders of a folder too", only=(DECODE,))
+    join: bool = _option(
+        False,
+        "the chapters of one recording (GX010001, GX020001; DJI_0001, DJI_0002) are one input, with one time",
+        only=(DECODE,),
     )
     udp: list[str] = _option(
         [], "send the records as JSON datagrams too (repeatable)", "HOST:PORT", only=(LIVE,)

@@ -1,7 +1,9 @@
 """The thread that reads a stream and opens it again when it breaks off, and the box with one slot where it leaves
 each picture for the thread that decodes."""
 
+import math
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
@@ -87,7 +89,8 @@ class Reader:
 
     Each picture is stamped with `clock()` (seconds) as it comes. A stream that cannot be opened, breaks off or ends is
     reported once and opened again with growing waits; one that cannot be opened again, such as standard input, closes
-    the mailbox when it ends. backoff: waits between tries to open the source again.
+    the mailbox when it ends. backoff: waits between tries to open the source again. give_up_s: seconds
+    without a picture after which it is not opened again, and `has_given_up`; None: never.
     """
 
     def __init__(
@@ -97,8 +100,12 @@ class Reader:
         clock: Callable[[], float],
         report: Report,
         backoff: Backoff | None = None,
+        give_up_s: float | None = None,
     ) -> None:
         self._source, self._mailbox, self._clock, self._report = source, mailbox, clock, report
+        self._give_up_s = math.inf if give_up_s is None else give_up_s
+        self._seen_s = 0.0
+        self.has_given_up = False
         self._backoff = backoff or Backoff()
         self._stopping = threading.Event()
         self._index = 0
@@ -108,6 +115,7 @@ class Reader:
 
     def start(self) -> None:
         """Begin to read."""
+        self._seen_s = time.monotonic()
         self._thread.start()
 
     def stop(self) -> None:
@@ -124,6 +132,10 @@ class Reader:
                         self._report(reason)
                     break
                 self._wait(reason or f"{self._source.name}: the stream ended")
+                if time.monotonic() - self._seen_s >= self._give_up_s:
+                    self.has_given_up = True
+                    self._report(f"{self._source.name}: no picture for {self._give_up_s:g} s; given up")
+                    break
         except BaseException as error:  # the thread that decodes shall end by it too
             self._mailbox.close(error)
         else:
@@ -136,6 +148,7 @@ class Reader:
                 for content in stream:
                     if self._stopping.is_set():
                         break
+                    self._seen_s = time.monotonic()
                     self._mailbox.put(Snapshot(content, self._index, self._clock()))
                     self._index += 1
                     self._note_success()
@@ -152,7 +165,9 @@ class Reader:
     def _wait(self, reason: str) -> None:
         if self._stopping.is_set():
             return
+        left_s = self._give_up_s - (time.monotonic() - self._seen_s)
         if not self._is_broken:
             self._is_broken = True
-            self._report(f"{reason}; trying again until it works")
-        self._stopping.wait(self._backoff.next_wait())
+            until = "until it works" if left_s == math.inf else f"for {max(0.0, left_s):.0f} s"
+            self._report(f"{reason}; trying again {until}")
+        self._stopping.wait(max(0.0, min(self._backoff.next_wait(), left_s)))

@@ -10,6 +10,7 @@ from lightgesture.sources.registry import (
     live_source,
     open_any,
     open_source,
+    refuse_missing_device,
 )
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import Content, LiveSource, Source, SourceOptions
@@ -30,5 +31,6 @@ __all__ = [
     "open_any",
     "open_source",
     "read_picture",
+    "refuse_missing_device",
     "to_image",
 ]

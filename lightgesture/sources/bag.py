@@ -4,35 +4,46 @@ import os
 from collections.abc import Iterator
 from contextlib import suppress
 from datetime import UTC, datetime
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import NamedTuple
 
-from lightgesture.config import DEFAULT_FPS
+from lightgesture.console import say
 from lightgesture.errors import InputError
+from lightgesture.features.types import Image
 from lightgesture.frames import Frame
-from lightgesture.sources.clock import FIRST_YEAR, RecordingClock
+from lightgesture.sources.bag_clock import LOOKED_AT, BagClock, has_stamps
+from lightgesture.sources.bag_messages import (
+    NANOSECONDS,
+    PictureMessage,
+    is_packet,
+    picture_type,
+    read_message,
+)
+from lightgesture.sources.bag_scan import UNCLOSED, ScanError
+from lightgesture.sources.bag_storage import FILE_SUFFIXES, Bag, storage_files
+from lightgesture.sources.packets import PacketDecoder
 from lightgesture.sources.pictures import depth_of
-from lightgesture.sources.ros_images import IMAGE_TYPES, message_to_bgr8
+from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.types import Source
 
-if TYPE_CHECKING:
-    from rosbags.highlevel import AnyReader
-    from rosbags.interfaces import Connection
-
-_SUFFIXES = (".bag", ".mcap", ".db3")
 _METADATA, _METADATA_KEY, _METADATA_BYTES = "metadata.yaml", b"rosbag2_bagfile_information", 4096
-_NANOSECONDS = 1_000_000_000
-
-CLOCK_MESSAGES: Final = 10
-"""Messages whose headers decide upon a bag's clock."""
+_YEAR_2000_S, _YEAR_2100_S = 946_684_800, 4_102_444_800
+"""A clock before or after tells no time of day: it is that of a simulation, or counts from the start of a machine."""
 
 
 def is_bag(path: str) -> bool:
-    """Whether the name is that of a bag: a file's by its ending, a folder's by the metadata in it."""
+    """Whether the name is that of a bag: a file's by its ending, a folder's by what lies in it.
+
+    The folder of a recorder that was killed has no metadata, but files that end as those of bags do.
+    """
     if os.path.isdir(path):
-        return _is_metadata(os.path.join(path, _METADATA))
-    return os.path.isfile(path) and path.lower().endswith(_SUFFIXES)
+        if _is_metadata(os.path.join(path, _METADATA)):
+            return True
+        with suppress(OSError):
+            return bool(storage_files(Path(path)))
+        return False
+    return os.path.isfile(path) and path.lower().endswith(FILE_SUFFIXES)
 
 
 def _is_metadata(path: str) -> bool:
@@ -44,125 +55,147 @@ def _is_metadata(path: str) -> bool:
         return False
 
 
-class BagFile(Source):
-    """The images of one topic of a bag, in the order in which they were recorded.
+class _Entry(NamedTuple):
+    """A message with its place in the topic; `kind`: as of `picture_type`. message: or what is wrong with it."""
 
-    topic: its name; None takes the only image topic there is. A bag has one clock, counted from the first message:
-    that of the messages' headers, or, where one of the first headers has none, that of the recording. start_utc: its
-    start, by the recording where headers have the time of a simulation. Messages that hold no picture are left out;
-    after the last one InputError tells how many. InputError when opened: no bag, no such topic, no image topic or
-    several of them.
+    index: int
+    kind: str
+    recorded_ns: int
+    message: PictureMessage | ValueError
+
+    @property
+    def stamp_ns(self) -> int:
+        """Of its header, 0 where it has none."""
+        return self.message.stamp_ns if isinstance(self.message, PictureMessage) else 0
+
+
+class BagFile(Source):
+    """The images of one topic of a bag, in the order in which they were recorded: pictures, or packets of a video.
+
+    topic: its name; None takes the only image topic there is. The clock is that of the headers of its messages, or,
+    where most have none, the times at which they were recorded; seconds from the first message. start_utc: the
+    moment of it. Messages that hold no picture are left out; after the last one InputError tells how
+    many, and whether the bag is damaged or was cut off. InputError when opened: no bag, no such topic, no image topic
+    or several of them.
     """
 
     def __init__(self, path: str, topic: str | None = None) -> None:
         self.name = path
-        self._reader = _open(path)
+        self.start_utc: datetime | None = None
+        self._damage: str | None = None
+        self._left_out: list[str] = []
+        self._given = 0
+        self._bag = Bag(path)
         try:
-            self._connections = _choose(self._reader, path, topic)
-        except InputError:
-            self._reader.close()
+            self._topic = _choose(self._bag, path, topic)
+            self._begin()
+        except BaseException:
+            self._bag.close()
             raise
-        self.frame_count = sum(one.msgcount for one in self._connections)
-        self._has_stamps, self._start_ns, self.start_utc = self._find_clock()
+
+    def _begin(self) -> None:
+        if self._bag.remark is not None:
+            say(f"{self.name}: {self._bag.remark}")
+        self.frame_count = sum(n for one, n in self._bag.channels.items() if one.topic == self._topic)
+        self._entries = self._read()
+        self._first = list(islice(self._entries, LOOKED_AT))
+        self._clock = BagClock(has_stamps([one.stamp_ns for one in self._first]))
+        if self._first:
+            first = self._first[0]
+            stamped = next((one for one in self._first if one.stamp_ns > 0), first)
+            stamp_ns = stamped.stamp_ns - (stamped.recorded_ns - first.recorded_ns)
+            self._clock.start(stamp_ns, first.recorded_ns)
+            moment_ns = stamp_ns if _is_day(stamp_ns) else first.recorded_ns
+            if _is_day(moment_ns):
+                self.start_utc = datetime.fromtimestamp(moment_ns / NANOSECONDS, UTC)
 
     def close(self) -> None:
         """Close the bag."""
-        self._reader.close()
+        self._bag.close()
 
     def __iter__(self) -> Iterator[Frame]:
-        left_out: list[str] = []
         depth = depth_of(self.name)
-        clock = RecordingClock(0.0, 1 / DEFAULT_FPS)
-        last: tuple[int, int] | None = None
-        before = -1
-        for index, (connection, recorded_ns, data) in enumerate(self._messages()):
+        decoder: PacketDecoder | None = None
+        for entry in chain(self._first, self._entries):
+            index, kind, recorded_ns, message = entry
+            time_ns = self._clock.read(entry.stamp_ns, recorded_ns)
             try:
-                message = self._deserialize(connection, data)
-                image = message_to_bgr8(message, depth)
+                if isinstance(message, ValueError):
+                    raise message
+                if not is_packet(kind, message):
+                    yield self._frame(message_to_bgr8(message, depth), index, time_ns)
+                    continue
+                decoder = decoder or PacketDecoder(message.format or "")
+                pictures = decoder.feed(index, time_ns, message.data)
             except ValueError as error:
-                left_out.append(f"message {index} {error}")
+                self._left_out.append(f"message {index} {error}")
                 continue
-            time_ns = _stamp(message) if self._has_stamps else recorded_ns
-            if time_ns == 0 and last is not None:  # a header without a stamp among others
-                time_ns = last[0] + recorded_ns - last[1]
-            last = time_ns, recorded_ns
-            time_s = clock.read((time_ns - self._start_ns) / _NANOSECONDS, index - before)
-            before = index
-            gap = f"the time stamps jump back by {clock.jump_s:g} s" if clock.jump_s else None
-            yield Frame(image, index, time_s, gap)
-        if left_out:
-            raise InputError(
-                f"{self.name}: {len(left_out)} of {self.frame_count} messages left out; the first: {left_out[0]}"
-            )
+            yield from self._video_frames(pictures)
+        if decoder is not None:
+            yield from self._video_frames(decoder.flush())
+        self._check_end()
 
-    def _find_clock(self) -> tuple[bool, int, datetime | None]:
-        """Whether the headers have a clock, the nanoseconds of its start, and the moment of that."""
-        stamps: list[tuple[int, int]] = []
-        with suppress(InputError):  # of a damaged bag, which is told where the damage is
-            for connection, recorded_ns, data in islice(self._messages(), CLOCK_MESSAGES):
-                with suppress(ValueError):
-                    stamps.append((_stamp(self._deserialize(connection, data)), recorded_ns))
-        if not stamps:
-            return False, 0, None
-        has_stamps = all(stamp for stamp, _ in stamps)
-        first = stamps[0] if has_stamps else stamps[0][::-1]
-        return has_stamps, first[0], next((moment for moment in map(_moment, first) if moment), None)
+    def _video_frames(self, pictures: list[tuple[Image, int]]) -> Iterator[Frame]:
+        for image, time_ns in pictures:
+            if not self._given and self._left_out:
+                # A recorder that joined in the middle has packets that need one before its first.
+                say(f"{self.name}: {len(self._left_out)} messages before the first whole picture")
+                self._left_out.clear()
+            yield self._frame(image, self._given + len(self._left_out), time_ns)
 
-    def _messages(self) -> Iterator[tuple["Connection", int, bytes]]:
+    def _frame(self, image: Image, index: int, time_ns: int) -> Frame:
+        self._given += 1
+        return Frame(image, index, round(time_ns / NANOSECONDS, 6))
+
+    def _read(self) -> Iterator[_Entry]:
+        index = 0
         try:
-            yield from self._reader.messages(self._connections)
-        except Exception as error:  # the reader leaves it to its storage what a damaged file raises
-            raise InputError(f"{self.name}: the bag is damaged ({error}); copy or record it again") from None
+            for channel, recorded_ns, data in self._bag.messages(self._topic):
+                kind = picture_type(channel.msgtype)
+                if kind is not None:
+                    yield _Entry(index, kind, recorded_ns, _parse(kind, data, channel.written))
+                    index += 1
+        except ScanError as error:
+            self._damage = str(error)
+        else:
+            if self.frame_count is not None and index < self.frame_count:
+                self._damage = f"is damaged and lacks {self.frame_count - index} of its messages"
 
-    def _deserialize(self, connection: "Connection", data: bytes) -> Any:
-        try:
-            return self._reader.deserialize(data, connection.msgtype)
-        except Exception as error:  # as above, for the bytes of one message
-            raise ValueError(f"cannot be read ({error})") from None
+    def _check_end(self) -> None:
+        """InputError: not all could be read."""
+        wrong: list[str] = []
+        if self._damage == UNCLOSED and not self._left_out:
+            say(f"{self.name}: the bag {UNCLOSED}; read as far as it goes, {self._given} pictures")
+        elif self._damage is not None:
+            wrong.append(f"the bag {self._damage}, {self._given} pictures of it could be read")
+        if self._left_out:
+            count = f"{len(self._left_out)} of {self.frame_count} messages left out"
+            wrong.append(f"{count}; the first: {self._left_out[0]}")
+        if wrong:
+            raise InputError(f"{self.name}: {'; '.join(wrong)}")
 
 
-def _open(path: str) -> "AnyReader":
+def _is_day(moment_ns: int) -> bool:
+    return _YEAR_2000_S <= moment_ns / NANOSECONDS < _YEAR_2100_S
+
+
+def _parse(kind: str, data: bytes, written: str) -> PictureMessage | ValueError:
     try:
-        from rosbags.highlevel import AnyReader
-        from rosbags.typesys import Stores, get_typestore
-    except ImportError:
-        raise InputError(f"{path}: is a bag; install lightgesture[bag] to read it") from None
-    try:
-        # Older ROS 2 bags do not say what their messages look like; images have not changed since.
-        reader = AnyReader([Path(path)], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
-        reader.open()
-    except Exception as error:  # the reader leaves it to its storage what a damaged file raises
-        raise InputError(f"{path}: is no bag that can be read ({error}); copy or record it again") from None
-    return reader
+        return read_message(kind, data, written)
+    except ValueError as error:
+        return error
 
 
-def _choose(reader: "AnyReader", path: str, topic: str | None) -> list["Connection"]:
-    images = [one for one in reader.connections if one.msgtype in IMAGE_TYPES]
-    names = sorted({one.topic for one in images})
+def _choose(bag: Bag, path: str, topic: str | None) -> str:
+    names = sorted({one.topic for one in bag.channels if picture_type(one.msgtype) is not None})
     if topic is None and len(names) > 1:
         raise InputError(
             f"{path}: holds {len(names)} image topics; choose one with --topic: {', '.join(names)}"
         )
     if not names:
-        others = ", ".join(sorted({one.topic for one in reader.connections})) or "none at all"
+        others = ", ".join(sorted({one.topic for one in bag.channels})) or "none at all"
         raise InputError(f"{path}: holds no image topic; its topics: {others}")
     wanted = names[0] if topic is None else topic
     if wanted not in names:
         raise InputError(f"{path}: has no image topic {wanted}; those there are: {', '.join(names)}")
-    return [one for one in images if one.topic == wanted]
-
-
-def _moment(time_ns: int) -> datetime | None:
-    """Nanoseconds since 1970 as a moment; None for those of a clock that was never set, or of a simulation."""
-    with suppress(OverflowError, OSError, ValueError):
-        moment = datetime.fromtimestamp(time_ns / _NANOSECONDS, UTC)
-        return moment if moment.year >= FIRST_YEAR else None
-    return None
-
-
-def _stamp(message: Any) -> int:
-    """Nanoseconds of the message's header, 0 where it has none."""
-    with suppress(AttributeError):
-        stamp = message.header.stamp
-        return int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec)
-    return 0
+    return wanted

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
+from lightgesture.sources.address import hide_login
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.types import LiveSource, SourceOptions
 
@@ -84,12 +85,15 @@ def open_camera(name: str, options: SourceOptions) -> CaptureStream:
 
 def open_gstreamer(line: str) -> CaptureStream:
     """A GStreamer pipeline that ends in `appsink`, not yet opened. UsageError: OpenCV was built without GStreamer."""
-    if cv2.CAP_GSTREAMER not in cv2.videoio_registry.getStreamBackends():
+    name = hide_login(line)
+    registry = cv2.videoio_registry
+    # Some builds know of it as a plug-in that is not there.
+    if cv2.CAP_GSTREAMER not in registry.getStreamBackends() or not registry.hasBackend(cv2.CAP_GSTREAMER):
         raise UsageError(
-            f"{line}: this OpenCV has no GStreamer; use the system's OpenCV package, or send the pictures to "
+            f"{name}: this OpenCV has no GStreamer; use the system's OpenCV package, or send the pictures to "
             "standard input as MJPEG"
         )
-    return CaptureStream(line, line, cv2.CAP_GSTREAMER, _timeouts())
+    return CaptureStream(name, line, cv2.CAP_GSTREAMER, _timeouts())
 
 
 def _timeouts() -> list[int]:

@@ -3,12 +3,12 @@
 import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, Self
-from urllib.parse import urlsplit, urlunsplit
 
 from lightgesture.console import say
-from lightgesture.errors import InputError, UsageError
+from lightgesture.errors import InputError
 from lightgesture.features.types import Image
 from lightgesture.sources import types
+from lightgesture.sources.address import split_address
 from lightgesture.sources.decoding import StreamDecoder
 from lightgesture.sources.types import LiveSource
 
@@ -27,11 +27,7 @@ class NetworkStream(LiveSource):
     """The pictures of a stream as they come; damaged ones are passed over, interlaced ones deinterlaced."""
 
     def __init__(self, address: str) -> None:
-        self.name = hide_login(address)
-        if not urlsplit(address).netloc:
-            raise UsageError(
-                f"{self.name}: names no host; write {address.partition(':')[0]}://HOST:PORT/PATH"
-            )
+        self.name = split_address(address).name
         self.is_reopened = True
         self._address = address
         self._container: InputContainer | None = None
@@ -98,15 +94,6 @@ class NetworkStream(LiveSource):
         if not self._is_told:
             self._is_told = True
             say(f"{self.name}: {text}")
-
-
-def hide_login(address: str) -> str:
-    """The address without user and password. UsageError: it is no address."""
-    try:
-        parts = urlsplit(address)
-    except ValueError as error:
-        raise UsageError(f"{address}: is no address ({error}); write it as rtsp://HOST:PORT/PATH") from None
-    return urlunsplit(parts._replace(netloc=parts.netloc.rpartition("@")[2]))
 
 
 def _reason(error: Exception) -> str:

@@ -3,26 +3,32 @@
 import glob
 import os
 import stat
+import sys
 from collections.abc import Callable, Iterable
 
 from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
+from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import open_camera, open_gstreamer
 from lightgesture.sources.folder import FrameFolder, natural_key
 from lightgesture.sources.network import NETWORK_SCHEMES, NetworkStream
+from lightgesture.sources.rtp import RtpStream, read_description
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source, SourceOptions
 from lightgesture.sources.video import VideoFile
 
 
-def _http_stream(address: str, _: SourceOptions) -> LiveSource:
+def _http_stream(address: str, options: SourceOptions) -> LiveSource:
     # HTTP and its encryption take time and memory that only who reads such a stream should pay for.
     from lightgesture.sources.http_stream import HttpStream
 
-    return HttpStream(address)
+    return HttpStream(address, options.insecure)
 
+
+DESCRIPTION_SUFFIX = ".sdp"
+"""Ending of a file that describes a stream."""
 
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
@@ -36,7 +42,9 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "camera": open_camera,
     "gstreamer": lambda line, _: open_gstreamer(line),
     "http": _http_stream,
+    "description": lambda path, _: read_description(path),
     "network": lambda address, _: NetworkStream(address),
+    "rtp": lambda address, _: RtpStream(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
 """Kind of stream to what reads it, given its name and what the user says about it."""
@@ -80,13 +88,23 @@ def live_source(name: str, options: SourceOptions) -> LiveSource:
     return LIVE_SOURCES[_live_kind(name)](name, options)
 
 
+def refuse_missing_device(name: str) -> None:
+    """UsageError: a camera that this machine does not have, which waiting brings only if somebody plugs it in."""
+    is_index = name.isdecimal() and sys.platform == "linux"
+    device = f"/dev/video{int(name)}" if is_index else name
+    if (is_index or name.startswith("/dev/")) and not os.path.exists(device):
+        there = ", ".join(sorted(glob.glob("/dev/video*"), key=natural_key)) or "no camera at all"
+        raise UsageError(f"{name}: no such device; this machine has {there}")
+
+
 def open_any(name: str, options: SourceOptions) -> Source:
     """Open what `open_source` opens, or make frames of what `live_source` reads; errors are those of these two.
 
     A stream is a `StreamFrames`, and is opened by its `with` block. What is there as a file or a folder is taken for
     one, and standard input for a recording.
     """
-    is_recording = name == STANDARD_INPUT or os.path.isfile(name) or os.path.isdir(name)
+    is_file = os.path.isfile(name) and not name.lower().endswith(DESCRIPTION_SUFFIX)
+    is_recording = name == STANDARD_INPUT or is_file or os.path.isdir(name)
     if is_recording or (_stream_kind(name) is None and "://" not in name):
         return open_source(name, options.fps, size=options.size, topic=options.topic)
     return StreamFrames(live_source(name, options))
@@ -100,6 +118,8 @@ def _kind(name: str) -> str:
     if os.path.isdir(name):
         return "folder"
     if os.path.isfile(name):
+        if name.lower().endswith(DESCRIPTION_SUFFIX):
+            raise InputError(f"{name}: describes a stream; decode it with `lightgesture live`")
         return "video"
     if _is_pipe(name):
         raise InputError(
@@ -108,7 +128,7 @@ def _kind(name: str) -> str:
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
     if "://" in name:
-        raise InputError(f"{name}: is a stream; decode it with `lightgesture live`")
+        raise InputError(f"{hide_login(name)}: is a stream; decode it with `lightgesture live`")
     if glob.has_magic(name):
         raise InputError(f"{name}: matches no file; check the pattern")
     raise InputError(f"{name}: no such file or folder; check the name")
@@ -121,8 +141,8 @@ def _live_kind(name: str) -> str:
     if os.path.exists(name):
         raise UsageError(f"{name}: is no stream; decode files and folders with `lightgesture decode`")
     raise UsageError(
-        f"{name}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://), a GStreamer pipeline "
-        "or - for standard input"
+        f"{hide_login(name)}: is no stream; name a camera (0, /dev/video0), an address (http://, rtsp://, rtp://), "
+        "a GStreamer pipeline or - for standard input"
     )
 
 
@@ -131,8 +151,12 @@ def _stream_kind(name: str) -> str | None:
     scheme = name.partition("://")[0].lower() if "://" in name else ""
     if scheme in ("http", "https"):
         return "http"
+    if scheme == "rtp":
+        return "rtp"
     if scheme in NETWORK_SCHEMES:
         return "network"
+    if name.lower().endswith(DESCRIPTION_SUFFIX):
+        return "description"
     if " ! " in name:
         return "gstreamer"
     if name.isdecimal() or _is_device(name) or name.startswith("/dev/"):

@@ -12,10 +12,6 @@ from lightgesture.features.image import BitDepth
 from lightgesture.features.types import Image
 from lightgesture.sources.pictures import decode_picture
 
-_RAW, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
-IMAGE_TYPES = (_RAW, _COMPRESSED)
-"""Types of the messages that hold a picture."""
-
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
@@ -24,7 +20,17 @@ class _Layout:
     bits: int
     channels: int
     conversion: int | None = None
+    rows: float = 1.0
+    """Rows of bytes for each row of pixels."""
 
+
+_MOSAICS = {
+    "rggb": cv2.COLOR_BayerBG2BGR,
+    "bggr": cv2.COLOR_BayerRG2BGR,
+    "gbrg": cv2.COLOR_BayerGR2BGR,
+    "grbg": cv2.COLOR_BayerGB2BGR,
+}
+"""ROS names the first two pixels of the first row, OpenCV those of the second row from the second column."""
 
 _LAYOUTS = {
     **{name: _Layout(8, 1) for name in ("mono8", "8UC1")},
@@ -37,11 +43,10 @@ _LAYOUTS = {
     "rgb16": _Layout(16, 3, cv2.COLOR_RGB2BGR),
     **{name: _Layout(8, 2, cv2.COLOR_YUV2BGR_UYVY) for name in ("uyvy", "yuv422")},
     **{name: _Layout(8, 2, cv2.COLOR_YUV2BGR_YUYV) for name in ("yuyv", "yuv422_yuy2")},
-    # ROS names the first two pixels of the first row, OpenCV those of the second row from the second column.
-    "bayer_rggb8": _Layout(8, 1, cv2.COLOR_BayerBG2BGR),
-    "bayer_bggr8": _Layout(8, 1, cv2.COLOR_BayerRG2BGR),
-    "bayer_gbrg8": _Layout(8, 1, cv2.COLOR_BayerGR2BGR),
-    "bayer_grbg8": _Layout(8, 1, cv2.COLOR_BayerGB2BGR),
+    **{f"bayer_{name}{bits}": _Layout(bits, 1, code) for name, code in _MOSAICS.items() for bits in (8, 16)},
+    # All brightnesses, then the colours of two by two pixels each.
+    "nv12": _Layout(8, 1, cv2.COLOR_YUV2BGR_NV12, rows=1.5),
+    "nv21": _Layout(8, 1, cv2.COLOR_YUV2BGR_NV21, rows=1.5),
 }
 
 
@@ -51,7 +56,7 @@ def message_to_bgr8(message: Any, depth: BitDepth) -> Image:
     depth: of the topic, for "mono16" says how wide a value is stored and not how much of it the camera fills.
     ValueError: its encoding is not known, its data are too short, or it is no picture.
     """
-    if not hasattr(message, "format"):
+    if getattr(message, "format", None) is None:
         return depth.bgr8(_unpack(message))
     image = decode_picture(message.data)
     if image is None:
@@ -66,13 +71,16 @@ def _unpack(message: Any) -> NDArray[Any]:
     height, width, step = int(message.height), int(message.width), int(message.step)
     row = width * layout.channels * layout.bits // 8
     data = np.frombuffer(message.data, np.uint8)
-    if not row or not height or step < row or data.size < height * step:
+    if layout.rows != 1.0 and (width % 2 or height % 2):
+        raise ValueError(f"has {width} x {height} pixels, and {message.encoding} needs even numbers")
+    lines = round(height * layout.rows)
+    if not row or not lines or step < row or data.size < lines * step:
         raise ValueError(f"holds {data.size} bytes, too few for {width} x {height} {message.encoding}")
-    rows = np.ascontiguousarray(data[: height * step].reshape(height, step)[:, :row])
+    rows = np.ascontiguousarray(data[: lines * step].reshape(lines, step)[:, :row])
     if layout.bits == 16:
         is_swapped = bool(message.is_bigendian) != (sys.byteorder == "big")
         values: NDArray[Any] = rows.view(np.uint16)
         rows = values.byteswap() if is_swapped else values
-    shape = (height, width) if layout.channels == 1 else (height, width, layout.channels)
+    shape = (lines, width) if layout.channels == 1 else (lines, width, layout.channels)
     image: NDArray[Any] = rows.reshape(shape)
     return image if layout.conversion is None else cv2.cvtColor(image, layout.conversion)

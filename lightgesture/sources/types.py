@@ -27,6 +27,8 @@ class SourceOptions:
     camera, which may give another."""
     topic: str | None = None
     """The image topic of a bag, needed where it has several."""
+    insecure: bool = False
+    """Take a camera's certificate that nobody vouches for."""
 
 
 TIMEOUT_S: Final = 5.0

@@ -47,6 +47,7 @@ def test_every_option_may_stand_in_the_file(config):
         'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
         'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nhook = ["say hello"]\n'
         'web = 8080\nweb-host = "::1"\n'
+        "insecure = true\ngive-up = 90.0\nrecursive = true\njoin = true\n"
     )
     settings = load("--config", path)
     assert settings.model_dump() == {
@@ -78,6 +79,10 @@ def test_every_option_may_stand_in_the_file(config):
         "mavlink": ["udpout:rov:14550"],
         "mavlink_map": "/map.toml",
         "hook": ["say hello"],
+        "insecure": True,
+        "give_up": 90.0,
+        "recursive": True,
+        "join": True,
     }
     assert settings.width_height == (640, 480)
 

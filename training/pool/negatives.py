@@ -4,7 +4,6 @@ What the selector proposes in a picture and what is not a hand there is what the
 so most of these regions are its own proposals.
 """
 
-import csv
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,6 +22,7 @@ from lightgesture.models import NONE
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.pool.samples import LabelledHand
 from lightgesture.training.samples import TrainingSample
+from lightgesture.training.tables import picture_path, table_rows
 
 Random = np.random.Generator
 
@@ -70,20 +70,18 @@ def read_scenes(manifest: Path) -> list[Scene]:
 
     Several rows may share a file; `face_boxes` is `x,y,w,h` joined by `;`. Paths are relative to the manifest.
     """
-    hands: dict[str, list[Box]] = {}
-    rows: dict[str, dict[str, str]] = {}
-    try:
-        with manifest.open(encoding="utf-8", newline="") as stream:
-            for row in csv.DictReader(stream):
-                hands.setdefault(row["file"], []).append(_box([row[name] for name in ("x", "y", "w", "h")]))
-                rows[row["file"]] = row
-        faces = {name: [_box(text.split(",")) for text in _texts(row)] for name, row in rows.items()}
-    except (OSError, UnicodeDecodeError, csv.Error, KeyError, TypeError, ValueError) as error:
-        raise InputError(f"{manifest}: is no table of pictures and boxes ({error}); see --scenes") from error
-    return [
-        _scene(manifest.parent / name, hands[name], faces[name], row.get("set") or "scenes")
-        for name, row in rows.items()
-    ]
+    hands: dict[Path, list[Box]] = {}
+    faces: dict[Path, list[Box]] = {}
+    sources: dict[Path, str] = {}
+    for line, row in table_rows(manifest, ("file", "x", "y", "w", "h"), "see --scenes"):
+        path = picture_path(manifest.parent, row["file"])
+        try:
+            hands.setdefault(path, []).append(_box([row[name] for name in ("x", "y", "w", "h")]))
+            faces[path] = [_box(text.split(",")) for text in _texts(row)]
+        except (ValueError, OverflowError) as error:
+            raise InputError(f"{manifest}, line {line}: holds no box ({error}); correct it") from None
+        sources[path] = row.get("set") or "scenes"
+    return [_scene(path, hands[path], faces[path], sources[path]) for path in hands]
 
 
 def negatives(scenes: Sequence[Scene], random: Random) -> Iterator[TrainingSample]:

@@ -11,10 +11,9 @@ either the whole picture is the hand. Optional: `set` (the person, room and came
 (else left), `lm` (21 landmarks `x;y`), `licence`.
 """
 
-import csv
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
@@ -28,6 +27,7 @@ from lightgesture.features.types import Box, Image
 from lightgesture.fsm.language.schema import TOKEN
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.datasets import LANDMARK_MARGIN, grow_box
+from lightgesture.training.tables import picture_path, table_rows
 
 KEPT_REACH = 2.2
 """Side of what is kept of a picture over the longer side of the hand's box: enough for any altered copy."""
@@ -146,35 +146,18 @@ def _folder_rows(folder: Path) -> list[HandRow]:
 
 
 def _manifest_rows(manifest: Path) -> list[HandRow]:
-    return [_manifest_row(manifest, number, row) for number, row in _read_table(manifest)]
-
-
-def _read_table(manifest: Path) -> Iterator[tuple[int, dict[str, str]]]:
-    try:
-        with manifest.open(encoding="utf-8", newline="") as stream:
-            reader = csv.DictReader(stream)
-            lacking = {"path", "token"} - set(reader.fieldnames or ())
-            if lacking:
-                raise InputError(
-                    f"{manifest}: has no column {', '.join(sorted(lacking))}; add it to the header"
-                )
-            for row in reader:
-                yield reader.line_num, row
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise InputError(
-            f"{manifest}: cannot be read as a CSV table ({reason}); give a manifest or a folder"
-        ) from error
+    rows = table_rows(manifest, ("path", "token"), "give a manifest or a folder")
+    return [_manifest_row(manifest, line, row) for line, row in rows]
 
 
 def _manifest_row(manifest: Path, line: int, row: dict[str, str]) -> HandRow:
     place = f"{manifest}, line {line}"
-    _check_class(place, row["token"] or "", "name the token")
+    _check_class(place, row["token"], "name the token")
     side = row.get("side") or "left"
     if side not in ("left", "right"):
         raise InputError(f"{place}: side {side!r}; it must be left or right")
     landmarks = _numbers(place, "lm", row["lm"].split(";"), 42) if row.get("lm") else None
-    path = manifest.parent / row["path"]
+    path = picture_path(manifest.parent, row["path"])
     return HandRow(
         path=path,
         token=row["token"],

@@ -123,3 +123,19 @@ def test_stopping_ends_the_wait_for_the_next_try():
     reader.stop()
     assert time.monotonic() - start < 0.5
     assert set(threading.enumerate()) <= before
+
+
+@pytest.mark.parametrize("plays", [[], [[b"1"]]])
+def test_a_stream_is_given_up_after_a_while_without_pictures(plays):
+    box, said = ListBox(), []
+    reader = Reader(FakeStream(*plays), box, time.monotonic, said.append, quick(), give_up_s=0.15)
+    start = time.monotonic()
+    reader.start()
+    while not box.is_closed:
+        assert time.monotonic() < start + 5
+        time.sleep(0.005)
+    assert 0.14 < time.monotonic() - start < 2
+    assert (reader.has_given_up, len(box.all)) == (True, len(plays))
+    assert said[0].endswith("; trying again for 0 s")
+    assert said[-1] == "cam: no picture for 0.15 s; given up"
+    reader.stop()

@@ -128,11 +128,13 @@ def test_gstreamer_where_opencv_has_it(camera, monkeypatch):
     monkeypatch.setattr(
         cv2.videoio_registry, "getStreamBackends", lambda: [cv2.CAP_FFMPEG, cv2.CAP_GSTREAMER]
     )
+    monkeypatch.setattr(cv2.videoio_registry, "hasBackend", lambda _: True)
     with live_source(line, SourceOptions()):
         assert camera.made[0].arguments[:2] == (line, cv2.CAP_GSTREAMER)
-    monkeypatch.setattr(cv2.videoio_registry, "getStreamBackends", lambda: [cv2.CAP_FFMPEG])
-    with pytest.raises(UsageError, match="this OpenCV has no GStreamer; use the system's"):
-        open_gstreamer(line)
+    for name, value in (("hasBackend", False), ("getStreamBackends", [cv2.CAP_FFMPEG])):
+        monkeypatch.setattr(cv2.videoio_registry, name, lambda *_, value=value: value)
+        with pytest.raises(UsageError, match="this OpenCV has no GStreamer; use the system's"):
+            open_gstreamer(line)
 
 
 @pytest.mark.parametrize(

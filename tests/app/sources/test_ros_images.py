@@ -57,14 +57,34 @@ def test_half_the_colours(encoding, order):
     assert np.abs(to_bgr8(message(values, encoding)).astype(int) - FLAT).max() <= 40
 
 
-@pytest.mark.parametrize(
-    ("encoding", "tile"),
-    [("bayer_rggb8", "rggb"), ("bayer_bggr8", "bggr"), ("bayer_gbrg8", "gbrg"), ("bayer_grbg8", "grbg")],
-)
-def test_mosaics(encoding, tile):
-    value = dict(zip("bgr", FLAT[0, 0], strict=True))
-    mosaic = np.tile(np.array([value[name] for name in tile], np.uint8).reshape(2, 2), (4, 4))
-    assert np.array_equal(to_bgr8(message(mosaic, encoding)), FLAT)
+@pytest.mark.parametrize("tile", ["rggb", "bggr", "gbrg", "grbg"])
+@pytest.mark.parametrize("bits", [8, 10, 12, 16])
+def test_mosaics(tile, bits):
+    value = dict(zip("bgr", FLAT[0, 0].tolist(), strict=True))
+    mosaic = np.tile(np.array([value[name] for name in tile], np.uint16).reshape(2, 2), (4, 4))
+    if bits == 8:
+        assert np.array_equal(to_bgr8(message(mosaic.astype(np.uint8), f"bayer_{tile}8")), FLAT)
+    else:
+        depth = BitDepth(pytest.fail, bits)
+        assert np.array_equal(to_bgr8(message(mosaic << bits - 8, f"bayer_{tile}16"), depth), FLAT)
+
+
+@pytest.mark.parametrize(("encoding", "order"), [("nv12", (0, 1)), ("nv21", (1, 0))])
+@pytest.mark.parametrize("padding", [0, 8])
+def test_colours_of_two_by_two_pixels(encoding, order, padding):
+    planes = cv2.cvtColor(FLAT, cv2.COLOR_BGR2YUV_I420).reshape(-1)
+    colours = np.stack([planes[64:80], planes[80:96]], axis=1)[:, order].reshape(4, 8)
+    rows = np.pad(np.concatenate([planes[:64].reshape(8, 8), colours]), ((0, 0), (0, padding)))
+    sent = SimpleNamespace(
+        height=8, width=8, step=8 + padding, encoding=encoding, is_bigendian=0, data=rows.ravel()
+    )
+    assert np.abs(to_bgr8(sent).astype(int) - FLAT).max() <= 3
+    sent.data = sent.data[:-9]
+    with pytest.raises(ValueError, match="too few for 8 x 8"):
+        to_bgr8(sent)
+    sent.width = 7
+    with pytest.raises(ValueError, match=f"has 7 x 8 pixels, and {encoding} needs even numbers"):
+        to_bgr8(sent)
 
 
 @pytest.mark.parametrize(

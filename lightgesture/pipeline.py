@@ -6,7 +6,7 @@ from copy import copy
 from typing import Self
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd
@@ -72,7 +72,7 @@ class Pipeline:
             need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
                 ReadingStage(load_classifier(model)),
-                find=RegionStage(selector),
+                find=load_selector(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
                 memory=lambda: memory_for_hold(*need),
                 mirrored=mirrored,

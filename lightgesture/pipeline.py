@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from copy import copy
 from typing import Self
 
@@ -17,7 +18,25 @@ from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord
-from lightgesture.threads import OneBlasThread
+
+
+class OneBlasThread:
+    """Makes blocks in which matrix products run in one thread; after a block the old number holds again.
+
+    The classifier's products are tiny: a second thread gains nothing, and where other work keeps the cores busy, the
+    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds. Only libraries that are
+    loaded when the object is made are limited, so NumPy must be.
+    """
+
+    def __init__(self) -> None:
+        from threadpoolctl import ThreadpoolController
+
+        self._libraries = ThreadpoolController().select(user_api="blas")
+
+    def block(self) -> AbstractContextManager[object]:
+        """A context with one thread."""
+        limited: AbstractContextManager[object] = self._libraries.limit(limits=1)
+        return limited
 
 
 class Pipeline:

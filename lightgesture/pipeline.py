@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from copy import copy
 from dataclasses import replace
 from datetime import datetime
@@ -10,7 +11,7 @@ from typing import Any, Self
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd, StageClock
@@ -22,7 +23,25 @@ from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
-from lightgesture.threads import OneBlasThread
+
+
+class OneBlasThread:
+    """Makes blocks in which matrix products run in one thread; after a block the old number holds again.
+
+    The classifier's products are tiny: a second thread gains nothing, and where other work keeps the cores busy, the
+    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds. Only libraries that are
+    loaded when the object is made are limited, so NumPy must be.
+    """
+
+    def __init__(self) -> None:
+        from threadpoolctl import ThreadpoolController
+
+        self._libraries = ThreadpoolController().select(user_api="blas")
+
+    def block(self) -> AbstractContextManager[object]:
+        """A context with one thread."""
+        limited: AbstractContextManager[object] = self._libraries.limit(limits=1)
+        return limited
 
 
 class Pipeline:
@@ -103,7 +122,7 @@ class Pipeline:
             need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
                 ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
-                find=RegionStage(selector),
+                find=load_selector(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
                 memory=lambda: memory_for_hold(*need),
                 mirrored=mirrored,

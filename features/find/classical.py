@@ -17,9 +17,10 @@ from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_pr
 from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, score_pairs
 from lightgesture.features.find.proposals import Proposals, fill_contour, propose
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
+from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
-from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.features.types import Box, Candidates, HandRegion
 
 Float = NDArray[np.float32]
 
@@ -83,6 +84,8 @@ def _region(
 class ClassicalSelector:
     """Colour map -> candidates with scores, by trees on regions of the skin map."""
 
+    settings: SelectorSettings = CLASSICAL
+
     def __init__(self, parts: ClassicalParts) -> None:
         self._parts = parts
 
@@ -100,3 +103,8 @@ class ClassicalSelector:
             for index, extents in zip(kept, other_extents(proposals, scores, kept), strict=True)
         )
         return Candidates(regions, together, colour.source_size)
+
+    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+        """None: this choice cannot but search."""
+        del colour, boxes
+        return None

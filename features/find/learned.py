@@ -18,6 +18,7 @@ from lightgesture.features.find.candidates import (
 from lightgesture.features.find.locator import Locator, Peaks, find_peaks
 from lightgesture.features.find.refiner import Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
+from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.network import IntegerNetwork
@@ -49,6 +50,8 @@ class Places:
 class LearnedSelector:
     """Colour map -> candidates with scores, by locator and refiner."""
 
+    settings: SelectorSettings = LEARNED
+
     def __init__(self, parts: LearnedParts) -> None:
         self._nets = Places(parts.locator, parts.refiner)
         self._places, self._pairs = parts.places, parts.pairs
@@ -67,7 +70,7 @@ class LearnedSelector:
         return Candidates(found, together, colour.source_size, face)
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates:
-        """Look only at predicted boxes, source pixels: far quicker than a search, and blind for what is elsewhere.
+        """Look only at predicted boxes, one or more, source pixels: far quicker than a search, and blind for the rest.
 
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
         of a pair is the lower one.

@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
+from lightgesture.features.find.settings import ALONE_CONFIDENCE
 from lightgesture.features.track.kalman import BoxState, box_of, meets, start_box, stop, update_box
 from lightgesture.features.types import Box, HandRegion, Side
 
@@ -192,16 +193,16 @@ def _opposite(side: Side) -> Side:
     return "left" if side == "right" else "right"
 
 
-def with_lone_side(track: Track, axis: float | None, width: int, by_middle: float) -> Track:
+def with_lone_side(track: Track, axis: float | None, width: int) -> Track:
     """The track with a better guess of its side, if its side is a guess: made at its birth, by the picture's middle
     if need be, and once more when the body's axis is first seen. It does not change as the hand moves on.
 
-    axis: x of the body's axis where it is seen; width: that of the picture, pixels; by_middle: certainty of a side that
-    is told by the picture's middle.
+    axis: x of the body's axis where it is seen; width: that of the picture, pixels.
     """
     if track.basis in ("pair", "axis") or (track.basis == "middle" and axis is None):
         return track
     x = track.motion[0].position
     if axis is None:
-        return replace(track, side="right" if x < width / 2 else "left", basis="middle", certainty=by_middle)
+        side: Side = "right" if x < width / 2 else "left"
+        return replace(track, side=side, basis="middle", certainty=ALONE_CONFIDENCE)
     return replace(track, side="right" if x < axis else "left", basis="axis", certainty=AXIS_CERTAINTY)

@@ -10,14 +10,14 @@ from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
-from lightgesture.console import say
+from lightgesture.console import print_unbuffered, say
 from lightgesture.errors import ExitStatus
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
-from lightgesture.sinks.printer import PrinterSink, print_unbuffered
+from lightgesture.sinks.printer import PrinterSink
 from lightgesture.sources import SourceOptions, live_source, refuse_missing_device
 
 DEBUG_STEM = "live"

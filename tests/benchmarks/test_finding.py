@@ -19,13 +19,13 @@ from lightgesture.benchmarks.finding.pipelines import (
 from lightgesture.benchmarks.finding.regions import Run, make_answer, run_methods, run_single
 from lightgesture.benchmarks.finding.tables import finding_tables, found_table
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.features.find.selector import RegionStage
 from lightgesture.features.find.selector_file import (
     BUNDLED,
     SelectorError,
     load_classical,
     load_learned,
 )
+from lightgesture.features.find.settings import LEARNED
 from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.hands import ReadingStage
@@ -62,13 +62,17 @@ def test_the_first_extent_is_kept_and_nothing_is_read():
 def test_other_stages_take_the_place_of_the_products(scene):
     made = []
 
-    class Refusing(RegionStage):
+    class Refusing:
+        settings = LEARNED
+
         def __init__(self):
-            super().__init__()
             made.append(self)
 
         def process(self, *arguments, **options):
             return Candidates((), np.zeros((0, 0), np.float32), (640, 480))
+
+        def follow(self, *arguments):
+            return None
 
     assert len(selector_method("classical").read(scene)) == 2
     method = variant("refuses everything", Stages(regions=Refusing))

@@ -167,7 +167,7 @@ def test_a_server_that_goes_and_comes_back():
         assert child.wait(20) == ExitStatus.OK
         said = child.stderr.read().splitlines()
     assert "cannot be opened (Connection refused)" in said[0]
-        assert said[0].endswith("trying again until it works")
+    assert said[0].endswith("trying again until it works")
     assert sum("pictures again" in line for line in said) == 2
 
 

@@ -17,7 +17,7 @@ from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink, print_unbuffered
-from lightgesture.sources import SourceOptions, live_source
+from lightgesture.sources import live_source
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -39,7 +39,7 @@ def run_live(
     if the reader of standard output went away and nobody else takes the records, or not one picture could be decoded.
     UsageError: the source, an option, the model or the grammar is wrong.
     """
-    source = live_source(source_name, SourceOptions(size=settings.width_height))
+    source = live_source(source_name, settings.source_options)
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()

@@ -1,11 +1,14 @@
 """Every option of the decoding commands with its range and its effect, as one model."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightgesture.config import DEFAULT_FPS
+
+if TYPE_CHECKING:
+    from lightgesture.sources import SourceOptions
 
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""
@@ -179,6 +182,13 @@ class DecodeSettings(BaseModel):
         min_length=1,
     )
     quiet: bool = _option(False, "no progress and no remarks on standard error")
+
+    @property
+    def source_options(self) -> "SourceOptions":
+        """What the user says about the source of pictures."""
+        from lightgesture.sources import SourceOptions
+
+        return SourceOptions(self.fps, self.width_height, self.topic)
 
     @property
     def width_height(self) -> tuple[int, int] | None:

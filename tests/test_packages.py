@@ -1,4 +1,4 @@
-"""Every folder of modules is named in pyproject.toml: one that is not would be missing where the package is installed."""
+"""Every folder of modules is named in pyproject.toml: one that is not would be missing from the installed package."""
 
 import tomllib
 from pathlib import Path

@@ -18,7 +18,7 @@ from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink
-from lightgesture.sources import SourceOptions, live_source, refuse_missing_device
+from lightgesture.sources import live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -42,7 +42,7 @@ def run_live(
     UsageError: the source, an option, the model or the grammar is wrong.
     """
     refuse_missing_device(source_name)
-    source = live_source(source_name, SourceOptions(size=settings.width_height, insecure=settings.insecure))
+    source = live_source(source_name, settings.source_options)
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()

@@ -8,11 +8,8 @@ from pathlib import Path
 
 from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
-from lightgesture.config.settings import BUILT_IN_MODELS, PATH_OPTIONS, DecodeSettings
+from lightgesture.config.settings import BUILT_IN_MODELS, NO_INFLUENCE, PATH_OPTIONS, DecodeSettings
 from lightgesture.sources import is_picture_name
-
-NO_INFLUENCE = frozenset({"as_json", "cluster", "jobs", "out", "quiet"})
-"""Settings that change no file of results; any other, also one that is added later, makes them anew."""
 
 _ROOMS_WITH_DATA = ("features", "models")
 

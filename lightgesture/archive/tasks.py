@@ -39,7 +39,7 @@ class Task:
         """The open source of its frames. InputError: one line."""
         if self.pictures:
             return FrameFolder(self.path, settings.fps, self.pictures)
-        return open_source(self.path, settings.fps, size=settings.width_height, topic=settings.topic)
+        return open_source(self.path, settings.source_options)
 
     def absolute(self) -> "Task":
         """The same for a process that runs in another folder."""

@@ -1,11 +1,14 @@
 """Every option of the decoding commands with its range and its effect, as one model."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightgesture.config import DEFAULT_FPS
+
+if TYPE_CHECKING:
+    from lightgesture.sources import SourceOptions
 
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""
@@ -44,10 +47,15 @@ def _option(
     *,
     only: tuple[str, ...] = DECODING,
     kind: Literal["path", ""] = "",
+    changes_results: bool = True,
     **checks: Any,
 ) -> Any:
-    """A field that is an option too; `only`: the commands that have it. kind: "path" of a file or a folder."""
-    extra: Any = {"metavar": metavar, "only": only, "kind": kind}
+    """A field that is an option too.
+
+    only: the commands that have it. kind: "path" of a file or a folder. changes_results: whether what `decode` writes
+    into its folder of results depends on it.
+    """
+    extra: Any = {"metavar": metavar, "only": only, "kind": kind, "changes_results": changes_results}
     return Field(default=default, description=text, json_schema_extra=extra, **checks)
 
 
@@ -124,7 +132,9 @@ class DecodeSettings(BaseModel):
         le=MAX_FPS,
         allow_inf_nan=False,
     )
-    as_json: bool = _option(False, "records on standard output, one JSON object a line", alias="json")
+    as_json: bool = _option(
+        False, "records on standard output, one JSON object a line", alias="json", changes_results=False
+    )
     frames: bool = _option(False, "a record for every frame too", only=STREAMS)
     out: str | None = _option(
         None,
@@ -132,6 +142,7 @@ class DecodeSettings(BaseModel):
         "DIR",
         kind="path",
         only=(DECODE,),
+        changes_results=False,
         min_length=1,
     )
     annotate: bool = _option(
@@ -145,6 +156,7 @@ class DecodeSettings(BaseModel):
         "videos decoded at once, each by a process of its own (default: the cores)",
         "N",
         only=(DECODE,),
+        changes_results=False,
         ge=1,
         le=MAX_JOBS,
     )
@@ -153,6 +165,7 @@ class DecodeSettings(BaseModel):
         "decode on the workers of the Dask scheduler at this address",
         "ADDRESS",
         only=(DECODE,),
+        changes_results=False,
         min_length=1,
     )
     size: str | None = _option(
@@ -227,7 +240,14 @@ class DecodeSettings(BaseModel):
         kind="path",
         min_length=1,
     )
-    quiet: bool = _option(False, "no progress and no remarks on standard error")
+    quiet: bool = _option(False, "no progress and no remarks on standard error", changes_results=False)
+
+    @property
+    def source_options(self) -> "SourceOptions":
+        """What the user says about the source of pictures."""
+        from lightgesture.sources import SourceOptions
+
+        return SourceOptions(self.fps, self.width_height, self.topic, self.insecure)
 
     @property
     def width_height(self) -> tuple[int, int] | None:
@@ -238,12 +258,21 @@ class DecodeSettings(BaseModel):
         return int(width), int(height)
 
 
-PATH_OPTIONS = tuple(
-    name
-    for name, field in DecodeSettings.model_fields.items()
-    if isinstance(field.json_schema_extra, dict) and field.json_schema_extra["kind"] == "path"
-)
+def _fields_with(key: str, value: object) -> tuple[str, ...]:
+    """Fields whose options say this of themselves."""
+    fields = DecodeSettings.model_fields.items()
+    return tuple(
+        name
+        for name, field in fields
+        if isinstance(field.json_schema_extra, dict) and field.json_schema_extra[key] == value
+    )
+
+
+PATH_OPTIONS = _fields_with("kind", "path")
 """Fields that name files and folders."""
+
+NO_INFLUENCE = _fields_with("changes_results", False)
+"""Fields that change no file of results; any other makes these anew."""
 
 
 def change_paths(values: Mapping[str, Any], change: Callable[[str], str]) -> dict[str, str]:

@@ -6,7 +6,6 @@ import stat
 import sys
 from collections.abc import Callable, Iterable
 
-from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
@@ -66,21 +65,13 @@ def expand_inputs(inputs: Iterable[str]) -> list[str]:
     return list(found.values())
 
 
-def open_source(
-    path: str | os.PathLike[str],
-    fps: float = DEFAULT_FPS,
-    *,
-    size: tuple[int, int] | None = None,
-    topic: str | None = None,
-) -> Source:
+def open_source(path: str | os.PathLike[str], options: SourceOptions | None = None) -> Source:
     """Open a video, a folder of frames, a bag, or standard input (`-`); use it in a `with` block, iterate it once.
 
-    fps: frames a second of a folder or of standard input, above 0; others have their own time stamps. size: width and
-    height of raw pictures on standard input. topic: the image topic of a bag. InputError: one line that says what is
-    wrong with this input.
+    InputError: one line that says what is wrong with this input.
     """
     name = os.fspath(path)
-    return SOURCES[_kind(name)](name, SourceOptions(fps, size, topic))
+    return SOURCES[_kind(name)](name, options or SourceOptions())
 
 
 def live_source(name: str, options: SourceOptions) -> LiveSource:
@@ -106,7 +97,7 @@ def open_any(name: str, options: SourceOptions) -> Source:
     is_file = os.path.isfile(name) and not name.lower().endswith(DESCRIPTION_SUFFIX)
     is_recording = name == STANDARD_INPUT or is_file or os.path.isdir(name)
     if is_recording or (_stream_kind(name) is None and "://" not in name):
-        return open_source(name, options.fps, size=options.size, topic=options.topic)
+        return open_source(name, options)
     return StreamFrames(live_source(name, options))
 
 

@@ -1,6 +1,5 @@
 """Videos, folders of frames and pictures, good and bad."""
 
-import inspect
 import struct
 
 import cv2
@@ -8,12 +7,13 @@ import numpy as np
 import pytest
 
 from lightgesture.config import DEFAULT_FPS
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import InputError
-from lightgesture.sources import SOURCES, expand_inputs, natural_key, open_source, read_picture
+from lightgesture.sources import SOURCES, SourceOptions, expand_inputs, natural_key, open_source, read_picture
 
 
-def read_all(path, **options):
-    with open_source(path, **options) as source:
+def read_all(path, options=None):
+    with open_source(path, options) as source:
         return list(source)
 
 
@@ -112,7 +112,7 @@ def test_folder_in_natural_order(make_folder):
     (folder / "notes.txt").write_text("no picture")
     (folder / ".11.png").write_bytes(b"no picture either")
     (folder / "below.png").mkdir()
-    frames = read_all(folder, fps=10.0)
+    frames = read_all(folder, SourceOptions(fps=10.0))
     first_pixels = [int(frame.image[0, 0, 0]) for frame in frames]
     assert first_pixels == [number * 7 for number in range(1, 13)]
     assert [frame.time_s for frame in frames][:4] == [0.0, 0.1, 0.2, 0.3]
@@ -120,7 +120,7 @@ def test_folder_in_natural_order(make_folder):
 
 
 def test_default_rate_is_that_of_the_options(make_folder):
-    assert inspect.signature(open_source).parameters["fps"].default == DEFAULT_FPS
+    assert SourceOptions().fps == DecodeSettings().fps == DEFAULT_FPS
     assert read_all(make_folder("frames", 4))[3].time_s == pytest.approx(0.1)
 
 
@@ -135,7 +135,7 @@ def test_folder_leaves_out_what_is_no_picture(make_folder):
     (folder / "2.png").write_bytes(b"no picture")
     (folder / "4.png").write_bytes(b"")
     frames = []
-    with open_source(folder, fps=10.0) as source, pytest.raises(InputError) as caught:
+    with open_source(folder, SourceOptions(fps=10.0)) as source, pytest.raises(InputError) as caught:
         frames.extend(source)
     assert [(frame.index, frame.time_s) for frame in frames] == [(0, 0.0), (2, 0.2), (4, 0.4)]
     assert "2 of 5 pictures left out" in str(caught.value)

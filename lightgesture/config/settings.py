@@ -107,7 +107,9 @@ class DecodeSettings(BaseModel):
         min_length=1,
     )
     annotate: bool = _option(
-        False, "write DIR/<input stem>.mp4 too, with hands, sentence and outcome drawn in", only=(DECODE,)
+        False,
+        "write DIR/<input stem>_annotated.mp4 too, with hands, sentence and outcome drawn in",
+        only=(DECODE,),
     )
     plot: bool = _option(
         False, "write DIR/<input stem>.png too, a picture of signs and instructions over time", only=(DECODE,)

@@ -69,6 +69,8 @@ class ArchiveFolder:
             for path in (self.path / f"{task.stem}{suffix}" for suffix in suffixes):
                 if not os.path.lexists(path):
                     continue
+                if path.is_dir():
+                    raise UsageError(f"{path}: cannot be written (is a folder); {_ELSEWHERE}")
                 if any(os.path.exists(path) and os.path.samefile(path, file) for file in inputs):
                     raise UsageError(
                         f"{path}: is an input, and results of {task.name} would replace it; {_ELSEWHERE}"

@@ -66,7 +66,7 @@ class SoundTrack:
         self._input, self._container = self._first.streams.audio[0], container
         codec = self._input.codec_context
         with suppress(av.FFmpegError, ValueError, TypeError):
-            if codec.name in COPIED:
+            if codec.codec.canonical_name in COPIED:
                 self._output = container.add_stream_from_template(self._input)
                 self._packets = self._copied()
             else:

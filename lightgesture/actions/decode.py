@@ -15,6 +15,8 @@ from lightgesture.archive.tasks import Done, Hear, Message, Outcome, Task, make_
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import one_line, say, write_message
 from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.results import WRITERS
+from lightgesture.results.ownership import ANNOTATED
 
 SAMPLE = Path(__file__).resolve().parents[1] / "data" / "sample.mp4"
 """The bundled clip, decoded where no input is named."""
@@ -30,9 +32,12 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
     or an output folder is wrong, or an option needs a package that is not there.
     """
     _check(settings)
-    tasks = _tasks(inputs, settings.quiet)
+    tasks = _tasks(inputs, settings)
     with open_archive_folder(settings) as folder:
         known = {task.place: folder.look_up(task) for task in tasks} if folder else {}
+        waiting = [task for task in tasks if known.get(task.place) is None]
+        if folder is not None:
+            folder.refuse_to_replace(waiting, _suffixes(settings))
         with Board(tasks, settings.quiet) as board:
 
             def hear(message: Message) -> None:
@@ -44,7 +49,7 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
             for place, outcome in known.items():
                 if outcome is not None:
                     board.hear(Done(place, outcome))
-            _execute([task for task in tasks if known.get(task.place) is None], settings, hear)
+            _execute(waiting, settings, hear)
     if not settings.quiet:
         _tell(tasks, board.outcomes)
     is_failed = any(outcome.status == "failed" for outcome in board.outcomes.values())
@@ -69,12 +74,21 @@ def _check(settings: DecodeSettings) -> None:
         raise UsageError("--plot needs matplotlib; pip install 'lightgesture[plots]'")
 
 
-def _tasks(inputs: Sequence[str], quiet: bool) -> list[Task]:
+def _tasks(inputs: Sequence[str], settings: DecodeSettings) -> list[Task]:
+    def tell(text: str) -> None:
+        if not settings.quiet:
+            say(text)
+
     if inputs:
-        return make_tasks(inputs)
-    if not quiet:
-        say("no input named; decoding the bundled clip")
+        return make_tasks(inputs, recursive=settings.recursive, join=settings.join, tell=tell)
+    tell("no input named; decoding the bundled clip")
     return [Task(0, str(SAMPLE), SAMPLE.name, SAMPLE.stem)]
+
+
+def _suffixes(settings: DecodeSettings) -> list[str]:
+    """Of the files that each input gets."""
+    chosen = {ANNOTATED: settings.annotate, ".png": settings.plot}
+    return [*WRITERS, *(suffix for suffix, is_chosen in chosen.items() if is_chosen)]
 
 
 def _execute(tasks: Sequence[Task], settings: DecodeSettings, hear: Hear) -> None:

@@ -10,19 +10,25 @@ from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
 from lightgesture.config.settings import BUILT_IN_MODELS, NO_INFLUENCE, PATH_OPTIONS, DecodeSettings
 from lightgesture.sources import is_picture_name
+from lightgesture.sources.bag import is_bag
 
 _ROOMS_WITH_DATA = ("features", "models")
 
 
 def input_fingerprint(task: Task) -> str | None:
-    """Of size and time of change: of a file, or of the pictures of a folder with their names.
+    """Of size and time of change: of a file or its chapters, or of the pictures of a folder, or the files of a bag,
+    with their names.
 
     None where there is nothing to go by: no such file, a stream, a folder that cannot be read.
     """
     try:
         if not os.path.isdir(task.path):
-            return _digest([_stamp(task.path)]) if os.path.isfile(task.path) else None
-        names = task.pictures or sorted(name for name in os.listdir(task.path) if is_picture_name(name))
+            files = task.chapters or (task.path,)
+            return _digest([_stamp(path) for path in files]) if all(map(os.path.isfile, files)) else None
+        is_whole = is_bag(task.path)
+        names = task.pictures or sorted(
+            name for name in os.listdir(task.path) if is_whole or is_picture_name(name)
+        )
         return _digest([(os.fsencode(name).hex(), *_stamp(os.path.join(task.path, name))) for name in names])
     except OSError:
         return None

@@ -19,11 +19,14 @@ from lightgesture.config.opening import make_folder
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.results.atomic import replacing
+from lightgesture.results.ownership import is_ours
 
 MANIFEST = ".lightgesture.json"
 LOCK = ".lightgesture.lock"
 FORMAT = 1
 """Version of the manifest; one of another version is as good as none."""
+
+_ELSEWHERE = "name another folder with --out, or move the file"
 
 _PART = re.compile(r"\.[0-9a-f]{32}\.part")
 
@@ -54,6 +57,28 @@ class ArchiveFolder:
             text = f"{task.name}: {self.path / task.stem}.* are the results of {entry['path']}; name another --out"
             return Outcome("failed", text)
         return None
+
+    def refuse_to_replace(self, tasks: Sequence[Task], suffixes: Sequence[str]) -> None:
+        """UsageError: a file of results would take the place of an input, or of a file that is not ours.
+
+        tasks: those that are to be decoded. suffixes: of the files that each gets.
+        """
+        inputs = [file for task in tasks for file in task.files if os.path.isfile(file)]
+        for task in tasks:
+            known = self._entries.get(task.stem, {}).get("files", ())
+            for path in (self.path / f"{task.stem}{suffix}" for suffix in suffixes):
+                if not os.path.lexists(path):
+                    continue
+                if path.is_dir():
+                    raise UsageError(f"{path}: cannot be written (is a folder); {_ELSEWHERE}")
+                if any(os.path.exists(path) and os.path.samefile(path, file) for file in inputs):
+                    raise UsageError(
+                        f"{path}: is an input, and results of {task.name} would replace it; {_ELSEWHERE}"
+                    )
+                if path.name not in known and not is_ours(path):
+                    raise UsageError(
+                        f"{path}: was not written by this program and would be replaced; {_ELSEWHERE}"
+                    )
 
     def remember(self, task: Task, outcome: Outcome) -> None:
         """Note a finished input. UsageError: the folder cannot be written."""

@@ -30,6 +30,7 @@ from lightgesture.results import (
     open_plot,
     open_writer,
 )
+from lightgesture.results.ownership import ANNOTATED
 from lightgesture.sources import Source
 from lightgesture.watch import Watch
 
@@ -128,7 +129,7 @@ class _Work:
         if self._settings.plot:
             self._frame_writers.append(stack.enter_context(open_plot(self._path(".png"), self._task.name)))
         if self._settings.annotate:
-            self._video = stack.enter_context(open_annotated_video(self._path(".mp4")))
+            self._video = stack.enter_context(open_annotated_video(self._path(ANNOTATED), self._task.files))
 
     def _path(self, suffix: str) -> Path:
         name = f"{self._task.stem}{suffix}"

@@ -146,7 +146,9 @@ class DecodeSettings(BaseModel):
         min_length=1,
     )
     annotate: bool = _option(
-        False, "write DIR/<input stem>.mp4 too, with hands, sentence and outcome drawn in", only=(DECODE,)
+        False,
+        "write DIR/<input stem>_annotated.mp4 too, with hands, sentence and outcome drawn in",
+        only=(DECODE,),
     )
     plot: bool = _option(
         False, "write DIR/<input stem>.png too, a picture of signs and instructions over time", only=(DECODE,)
@@ -179,7 +181,10 @@ class DecodeSettings(BaseModel):
         None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE, CALIBRATE), min_length=1
     )
     insecure: bool = _option(
-        False, "take a camera's own certificate for https, which nobody vouches for", only=(LIVE, CALIBRATE)
+        False,
+        "take a camera's own certificate for https, which nobody vouches for",
+        only=(LIVE, CALIBRATE),
+        changes_results=False,
     )
     give_up: float | None = _option(
         None,
@@ -189,8 +194,11 @@ class DecodeSettings(BaseModel):
         gt=0,
         le=MAX_GIVE_UP_S,
         allow_inf_nan=False,
+        changes_results=False,
     )
-    recursive: bool = _option(False, "videos in the folders of a folder too", only=(DECODE,))
+    recursive: bool = _option(
+        False, "videos in the folders of a folder too", only=(DECODE,), changes_results=False
+    )
     join: bool = _option(
         False,
         "the chapters of one recording (GX010001, GX020001; DJI_0001, DJI_0002) are one input, with one time",

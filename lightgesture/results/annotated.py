@@ -4,6 +4,7 @@ Written by PyAV and not by OpenCV, whose writer knows one constant rate, tells n
 which is what browsers and phones play.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
@@ -17,6 +18,8 @@ from lightgesture.features.types import Image
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
 from lightgesture.results.overlay import Overlay
+from lightgesture.results.ownership import MARK
+from lightgesture.results.sound import SoundTrack
 
 if TYPE_CHECKING:
     from av.container import OutputContainer
@@ -41,8 +44,8 @@ NOMINAL_RATE: Final = 30
 class AnnotatedVideo:
     """Takes frame after frame with its records."""
 
-    def __init__(self, container: "OutputContainer") -> None:
-        self._container = container
+    def __init__(self, container: "OutputContainer", sound: SoundTrack) -> None:
+        self._container, self._sound = container, sound
         self._overlay = Overlay()
         self._stream: VideoStream | None = None
         self._size = (0, 0)
@@ -58,8 +61,10 @@ class AnnotatedVideo:
         picture = self._overlay.draw(image_bgr, records)
         if self._stream is None:
             self._stream = self._open(picture)
+            self._sound.add_to(self._container)
         frame = av.VideoFrame.from_ndarray(_fitted(picture, self._size), format="bgr24")
         self._tick = max(self._tick + 1, round(time_s * TICKS_PER_S))
+        self._sound.write_until(self._tick / TICKS_PER_S)
         frame.pts, frame.time_base = self._tick, Fraction(1, TICKS_PER_S)
         self._container.mux(self._stream.encode(frame))
 
@@ -67,6 +72,7 @@ class AnnotatedVideo:
         """Write what the encoder still holds."""
         if self._stream is not None:
             self._container.mux(self._stream.encode(None))
+            self._sound.write_until(math.inf)
 
     def _open(self, picture: Image) -> "VideoStream":
         height, width = picture.shape[:2]
@@ -81,19 +87,31 @@ class AnnotatedVideo:
 
 
 @contextmanager
-def open_annotated_video(path: Path) -> Iterator[AnnotatedVideo]:
-    """Write an `.mp4` file that appears under its name when the block ends well."""
+def open_annotated_video(path: Path, originals: Sequence[str] = ()) -> Iterator[AnnotatedVideo]:
+    """Write an `.mp4` file that appears under its name when the block ends well.
+
+    originals: paths of the video, or of its chapters, whose sound and metadata it gets, where it has any.
+    """
     import av
 
     with replacing(path) as temporary, open(temporary, "wb") as stream:
         # Through a file of our own: FFmpeg would read signs in a name as a protocol.
         container = av.open(stream, "w", format="mp4")
+        sound = SoundTrack(originals)
+        container.metadata.update(_marked(sound.metadata))
         try:
-            video = AnnotatedVideo(container)
+            video = AnnotatedVideo(container, sound)
             yield video
             video.finish()
         finally:
             container.close()
+            sound.close()
+
+
+def _marked(metadata: dict[str, str]) -> dict[str, str]:
+    """With a word by which the file is known for ours."""
+    comment = metadata.get("comment", "")
+    return metadata | {"comment": f"{comment}; {MARK}" if comment else MARK}
 
 
 def _fitted(picture: Image, size: tuple[int, int]) -> Image:

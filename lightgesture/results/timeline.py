@@ -12,6 +12,7 @@ from lightgesture.fsm import Instruction, Rejected, Word
 from lightgesture.models import CLASSES, NONE
 from lightgesture.records import FrameRecord, Record
 from lightgesture.results.atomic import replacing
+from lightgesture.results.ownership import SOFTWARE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,7 +109,7 @@ def draw_timeline(timeline: Timeline, name: str, path: Path) -> None:
     issued.set_xlabel("time, seconds")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # signs of a name that the font lacks are drawn as boxes
-        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+        figure.savefig(path, format="png", dpi=DOTS_PER_INCH, metadata={"Software": SOFTWARE})
 
 
 def _draw_signs(axes: "Axes", timeline: Timeline) -> None:

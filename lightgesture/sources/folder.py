@@ -56,6 +56,7 @@ def _list_pictures(path: str) -> list[str]:
         raise InputError(f"{path}: cannot be read ({error.strerror}); name a readable folder") from None
     if not files:
         raise InputError(
-            f"{path}: no pictures in this folder; name a folder of frames, such as PNG or JPEG files"
+            f"{path}: no pictures in this folder, and no videos; name a folder of either, or with --recursive one "
+            "that has such folders"
         )
     return sorted(files, key=natural_key)

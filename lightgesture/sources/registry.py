@@ -10,6 +10,7 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
 from lightgesture.sources.capture import open_camera, open_gstreamer
+from lightgesture.sources.contents import look_into
 from lightgesture.sources.folder import FrameFolder, natural_key
 from lightgesture.sources.network import NETWORK_SCHEMES, NetworkStream
 from lightgesture.sources.rtp import RtpStream, read_description
@@ -29,9 +30,21 @@ def _http_stream(address: str, options: SourceOptions) -> LiveSource:
 DESCRIPTION_SUFFIX = ".sdp"
 """Ending of a file that describes a stream."""
 
+
+def _open_folder(path: str, options: SourceOptions) -> Source:
+    """The frames in a folder, or the one recording in it. InputError: there are several, which `decode` takes."""
+    recordings = look_into(path, recursive=False).recordings
+    if not recordings:
+        return FrameFolder(path, options.fps)
+    if len(recordings) > 1:
+        names = ", ".join(map(os.path.basename, recordings[:3]))
+        raise InputError(f"{path}: holds {len(recordings)} videos ({names}, ...); name one of them")
+    return SOURCES[_kind(recordings[0])](recordings[0], options)
+
+
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
-    "folder": lambda path, options: FrameFolder(path, options.fps),
+    "folder": _open_folder,
     "standard input": lambda _, options: StandardInput(options),
     "video": lambda path, options: VideoFile(path, options.fps),
 }

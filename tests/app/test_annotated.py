@@ -70,7 +70,7 @@ def test_through_the_command_line(run, make_video, tmp_path, fake):
     result = run("decode", make_video("dive.avi", 6), "--annotate", "--plot", "--json", "--out", out)
     assert (result.status, result.err) == (ExitStatus.OK, [])
     assert not any('"type":"frame"' in line for line in result.out), "they are for the pictures alone"
-    assert [time_s for time_s, _, _ in frames_of(out / "dive.mp4")] == pytest.approx(
+    assert [time_s for time_s, _, _ in frames_of(out / "dive_annotated.mp4")] == pytest.approx(
         [0, 0.05, 0.1, 0.15, 0.2, 0.25]
     )
     assert (out / "dive.png").read_bytes().startswith(b"\x89PNG")

@@ -1,4 +1,4 @@
-"""The bundled clip in every container, codec, pixel form, colour matrix and transport: the same instruction out of each.
+"""The bundled clip in every container, codec, pixel form, matrix and transport: the same instruction out of each.
 
 FFmpeg's command line makes them; where it or an encoder is missing, the row is left out.
 """

@@ -79,24 +79,31 @@ class Converter:
 class Deinterlacer:
     """Frames in, progressive frames out, in order; nothing is done until the first interlaced one comes.
 
-    A frame of another size or form begins anew.
+    A frame of another size or form begins anew. What FFmpeg cannot deinterlace is passed on as it is.
     """
 
     def __init__(self) -> None:
         self._graph: Graph | None = None
         self._kind: tuple[int, int, str] | None = None
+        self._is_refused = False
 
     def feed(self, frame: "VideoFrame") -> list["VideoFrame"]:
         """The frames that are done; the filter looks one frame ahead."""
-        if self._graph is None and not frame.interlaced_frame:
+        import av
+
+        if self._is_refused or (self._graph is None and not frame.interlaced_frame):
             return [frame]
         kind = frame.width, frame.height, frame.format.name
         done: list[VideoFrame] = []
-        if self._graph is None or kind != self._kind:
-            done = self.flush()
-            self._graph, self._kind = _make_graph(frame), kind
-        self._graph.vpush(frame)
-        return done + self._pull()
+        try:
+            if self._graph is None or kind != self._kind:
+                done = self.flush()
+                self._graph, self._kind = _make_graph(frame), kind
+            self._graph.vpush(frame)
+            return done + self._pull()
+        except (av.FFmpegError, ValueError):
+            self._graph, self._is_refused = None, True
+            return [*done, frame]
 
     def flush(self) -> list["VideoFrame"]:
         """The frames that are left at the end."""

@@ -40,8 +40,8 @@ class StreamDecoder:
     """Decodes a stream from where its container stands to the end, over damaged places.
 
     Frames are lost that the decoder refuses, that it marks as corrupt, or that cannot be shown. objection: why one
-    could not be shown. is_cut: whether the container or its last packet is damaged where it ends. tell: takes remarks
-    for the user.
+    could not be shown; unshown: how many. is_cut: whether the container or its last packet is damaged where it ends.
+    tell: takes remarks for the user.
     """
 
     def __init__(
@@ -52,14 +52,15 @@ class StreamDecoder:
         self._in_filter: deque[int] = deque()
         self._lacks_order = container.format.name in ONLY_DECODING_ORDER
         self._stamps: list[int] = []
-        self._undecoded = self._unshown = 0
+        self._undecoded = self._held_back = 0
         self.objection: str | None = None
+        self.unshown = 0
         self.is_cut = False
 
     @property
     def lost(self) -> int:
         """Frames lost since the last picture."""
-        return self._undecoded + self._unshown
+        return self._undecoded + self._held_back
 
     def pictures(self) -> Generator[Picture | None, None, None]:
         """All pictures; None after a packet that gave none, for callers who wait no longer than they want to.
@@ -121,13 +122,14 @@ class StreamDecoder:
             yield from self._convert(done)
 
     def _convert(self, frame: "VideoFrame") -> Iterator[Picture]:
-        lost = self._unshown + (self._in_filter.popleft() if self._in_filter else 0)
+        lost = self._held_back + (self._in_filter.popleft() if self._in_filter else 0)
         try:
             image = self._converter.bgr8(frame)
         except ValueError as error:
-            self.objection, self._unshown = str(error), lost + 1
+            self.objection, self._held_back = str(error), lost + 1
+            self.unshown += 1
             return
-        self._unshown = 0
+        self._held_back = 0
         yield Picture(image, frame.time, lost)
 
     def _next_stamp(self) -> int | None:

@@ -33,8 +33,12 @@ SPARE_S: Final = 0.1
 _NO_TIME_STAMPS = 0x80
 """FFmpeg's flag of formats without a clock: elementary streams of H.264, HEVC, MJPEG and others."""
 
+_PICTURE_FORMATS = "_pipe"
+"""End of FFmpeg's names of pictures one after the other, which have no clock either."""
+
 _MICROSECONDS = 1e6
 _DURATION = re.compile(r"(\d+):(\d+):(\d+(?:\.\d+)?)")
+_RAW_VIDEO = b"YUV4MPEG2 "  # whose header is text
 _TEXT_CONTROLS = frozenset(b"\t\n\r\f\x1b")
 
 
@@ -64,7 +68,8 @@ class VideoFile(Source):
     def _begin(self, fps: float) -> None:
         container = self._container
         stream = self._stream = _choose(container, self.name)
-        has_clock = not container.format.flags & _NO_TIME_STAMPS
+        kind = container.format
+        has_clock = not (kind.flags & _NO_TIME_STAMPS or kind.name.endswith(_PICTURE_FORMATS))
         rate = self._rate = float(stream.average_rate or stream.guessed_rate or fps) if has_clock else fps
         self._period_s = 1 / rate
         self._duration_s = _seconds(stream, container) if has_clock else None
@@ -126,6 +131,9 @@ class VideoFile(Source):
         self._lost += lost
         if self._lost:
             say(f"{self.name}: left out {self._lost} damaged frame{'s' * (self._lost > 1)}")
+        if self._decoder.objection:
+            unshown = f"{self._decoder.unshown} of its frames cannot be shown"
+            raise InputError(f"{self.name}: {unshown}: {self._decoder.objection}; convert it")
         if os.path.getsize(self.name) > self._size:
             raise InputError(f"{self.name}: is still being written; decode it again when it is done")
         is_damaged = lost * self._period_s >= DAMAGE_S
@@ -219,5 +227,5 @@ def _refuse_no_video(path: str, start: bytes) -> None:
             f"{path}: is a single picture, no video; name its folder to decode all frames in it, "
             "or use `lightgesture recognize`"
         )
-    if all(byte >= 0x20 or byte in _TEXT_CONTROLS for byte in start):
+    if not start.startswith(_RAW_VIDEO) and all(byte >= 0x20 or byte in _TEXT_CONTROLS for byte in start):
         raise InputError(f"{path}: is text, no video; name a video or a folder of frames")

@@ -58,7 +58,7 @@ def write_video(tmp_path):
                 for frame in frames
             ]
             stream.width, stream.height, stream.pix_fmt = pictures[0].width, pictures[0].height, pixels
-            has_rate = path.suffix in (".avi", ".mpg")  # or each tick would be a frame
+            has_rate = path.suffix in (".avi", ".mpg", ".y4m")  # or each tick would be a frame
             ticks = stream.codec_context.time_base = Fraction(1, RATE) if has_rate else TICKS
             if colours is not None:
                 stream.codec_context.colorspace = colours

@@ -12,6 +12,7 @@ import pytest
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.sources import open_source
 from lightgesture.sources.clock import RecordingClock, creation_time
+from lightgesture.sources.conversion import Converter
 from lightgesture.sources.decoding import StreamDecoder
 from lightgesture.sources.file_size import is_cut_off
 
@@ -96,10 +97,38 @@ def test_frames_that_cannot_be_shown_fail(write_video, run, fake, monkeypatch):
     def refuse(converter, frame):
         raise ValueError("pixels of the form bayer cannot be converted")
 
-    monkeypatch.setattr("lightgesture.sources.conversion.Converter.bgr8", refuse)
+    monkeypatch.setattr(Converter, "bgr8", refuse)
     result = run("decode", write_video("a.mp4", noise(4)))
     assert result.status == ExitStatus.SOME_FAILED
     assert "no frame of this video (h264) can be shown: pixels of the form bayer" in result.err[0]
+
+
+def test_a_frame_that_cannot_be_shown_is_an_end_with_status_1(write_video, run, fake, monkeypatch):
+    convert, seen = Converter.bgr8, []
+
+    def refuse_some(converter, frame):
+        seen.append(frame)
+        if 4 <= len(seen) < 14:
+            raise ValueError("pixels of the form bayer cannot be converted")
+        return convert(converter, frame)
+
+    monkeypatch.setattr(Converter, "bgr8", refuse_some)
+    result = run("decode", write_video("a.mp4", noise(20)), "--json")
+    assert result.status == ExitStatus.SOME_FAILED
+    assert "10 of its frames cannot be shown: pixels of the form bayer" in result.err[-1]
+    assert sum('"reason":"gap"' in line for line in result.out) == 1
+
+
+def test_what_cannot_be_deinterlaced_is_passed_on(write_video, monkeypatch):
+    monkeypatch.setattr("lightgesture.sources.conversion.DEINTERLACER", "loudnorm")
+    path = write_video("a.ts", noise(6), options={"flags": "+ildct+ilme", "x264-params": "tff=1"})
+    assert times(read(path)) == list(range(6))
+
+
+def test_interlaced_ycgco(write_video, capsys):
+    options = {"flags": "+ildct+ilme", "x264-params": "tff=1"}
+    assert times(read(write_video("a.mkv", noise(6), options=options, colours=8))) == list(range(6))
+    assert capsys.readouterr().err == ""
 
 
 def damage(path, start=0.5, length=None, pattern=7):
@@ -286,6 +315,11 @@ def test_a_pipe_is_sent_to_standard_input(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(InputError, match=r"is a pipe; send pictures to standard input"):
         open_source(tmp_path / "pipe")
+
+
+def test_raw_video_whose_pixels_look_like_text(write_video):
+    path = write_video("a.y4m", [np.full((48, 64, 3), 90, np.uint8)] * 3, "wrapped_avframe")
+    assert times(read(path)) == [0, 1, 2]
 
 
 def test_a_header_without_a_size(write_video):

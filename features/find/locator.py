@@ -15,9 +15,7 @@ from numpy.typing import NDArray
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Network
-from lightgesture.features.types import Image
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float, Image
 
 MULTIPLE: Final = 16
 """Height and width that the net sees are multiples of its coarsest grid; the rest is filled with the mean colour."""

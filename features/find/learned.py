@@ -15,13 +15,14 @@ from lightgesture.features.find.candidates import (
     describe_places,
     score_pairs,
 )
-from lightgesture.features.find.locator import Locator, Peaks, find_peaks, logistic
+from lightgesture.features.find.locator import Locator, Peaks, find_peaks
 from lightgesture.features.find.refiner import Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
 from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.features.net.runner import logistic
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Box, Candidates, Float, HandRegion
 

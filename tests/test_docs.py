@@ -1,6 +1,7 @@
 """What the documents name is there: links, programs, modules, commands and their options."""
 
 import argparse
+import ast
 import importlib
 import pkgutil
 import re
@@ -29,6 +30,7 @@ NAME = re.compile(r"\b(lightgesture(?:\.\w+)+)(?!\.\w)\b")
 FILE_ENDINGS = (".toml", ".service", ".json", ".lock")
 CODE = re.compile(r"^```.*?^```$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"(?:^|[`/ |])lightgesture (?!import\b)([a-z]\w*)([^`\n#|]*)", re.MULTILINE)
+PYTHON = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 OPTION = re.compile(r"(?<!\S)(--[a-z][a-z-]*)")
 
 
@@ -111,6 +113,14 @@ def test_programs_and_names_of_python_are_there(document):
     names = set(NAME.findall(text)) - set(PROGRAM.findall(text))
     missing += sorted(name for name in names if not name.endswith(FILE_ENDINGS) and not is_name(name))
     assert missing == []
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=named)
+def test_python_imports_what_is_there(document):
+    trees = map(ast.parse, PYTHON.findall(document.read_text(encoding="utf-8")))
+    imports = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    names = [f"{node.module}:{alias.name}" for node in imports for alias in node.names]
+    assert [name for name in names if not is_name(name)] == []
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=named)

@@ -64,7 +64,7 @@ def _is_metadata(path: str) -> bool:
 class _Entry(NamedTuple):
     """A message with its place in the topic; `kind`: as of `picture_type`. message: or what is wrong with it."""
 
-    index: int
+    number: int
     kind: str
     recorded_ns: int
     message: PictureMessage | ValueError

@@ -56,7 +56,7 @@ class RtpStream(LiveSource):
         description = self._description or self._look()
         try:
             self._container = av.open(
-                BytesIO(description), format="sdp", timeout=types.TIMEOUT_S, options=_OPTIONS
+                BytesIO(description), "r", format="sdp", timeout=types.TIMEOUT_S, options=_OPTIONS
             )
         except (av.FFmpegError, ValueError) as error:
             raise InputError(

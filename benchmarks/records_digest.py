@@ -7,6 +7,7 @@ whole frames as single pictures, each with every selector and classifier. Two ru
 
 import argparse
 import hashlib
+import json
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -18,7 +19,6 @@ from lightgesture.console import native_messages_muted, print_line, say
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import Record
-from lightgesture.results import to_json_line
 from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, is_sequence, read_frames, read_negatives
 
@@ -36,11 +36,13 @@ QUICK_STEP = 25
 
 
 def digest_records(records: Iterable[Record]) -> str:
-    """Digest of records as they are printed, without the summary, whose times differ from run to run."""
+    """Digest of records as they are printed, without the time of day and the summary, which differ from run to run."""
     digest = hashlib.sha256()
     for record in records:
         if record.type != "summary":
-            digest.update(to_json_line(record).encode() + b"\n")
+            content = {key: value for key, value in record.to_dict().items() if key != "utc"}
+            line = json.dumps(content, ensure_ascii=False, separators=(",", ":"))
+            digest.update(line.encode() + b"\n")
     return digest.hexdigest()[:16]
 
 

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.image import as_bgr8
 from lightgesture.features.types import Box, Image
 
 Square = tuple[int, int, int]
@@ -25,22 +26,6 @@ class PatchSettings:
     small, larger gives the room behind the hand more say."""
 
 
-def as_bgr(image: NDArray[Any]) -> Image:
-    """The picture as uint8 (height, width, 3): a grey one, (h, w) or (h, w, 1), gets three equal channels.
-
-    Raises ValueError for any other shape, another depth than 8 bit, or no pixels.
-    """
-    if image.dtype != np.uint8:
-        raise ValueError(f"picture has values of type {image.dtype}; convert it to 8 bit (uint8) first")
-    if image.ndim == 2:
-        image = image[:, :, None]
-    if image.ndim != 3 or image.shape[2] not in (1, 3) or 0 in image.shape:
-        raise ValueError(
-            f"picture has shape {image.shape}; it must be (height, width, 3) BGR or (height, width) grey"
-        )
-    return np.repeat(image, 3, axis=2) if image.shape[2] == 1 else image
-
-
 def cut_patch(
     image: NDArray[np.uint8], box: Box, side: str, settings: PatchSettings | None = None
 ) -> NDArray[np.uint8]:
@@ -49,7 +34,7 @@ def cut_patch(
     image: uint8 (height, width, 3) BGR or (height, width) grey. box: outline of the hand, x, y, width, height
     in pixels; it may reach over the picture's edge, where the edge pixels are repeated. side: "left" or "right",
     the diver's own.
-    Raises ValueError for a box without area or wholly outside the picture, and for an unknown side.
+    Raises ValueError for another picture, a box without area or wholly outside the picture, and an unknown side.
     """
     return np.asarray(cut_patches(image, [box], [side], settings)[0], np.uint8)
 
@@ -62,7 +47,9 @@ def cut_patches(
 ) -> NDArray[np.uint8]:
     """Patches of several hands of one picture, uint8 (n, size, size, 3); see `cut_patch`."""
     settings = settings or PatchSettings()
-    picture = as_bgr(image)
+    if image.dtype != np.uint8:
+        raise ValueError(f"picture has values of type {image.dtype}; convert it to 8 bit (uint8) first")
+    picture = as_bgr8(image)
     _check(boxes, sides, (picture.shape[1], picture.shape[0]))
     size = settings.size
     squares = squares_round(np.array(boxes).reshape(-1, 4), settings.context)

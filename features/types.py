@@ -51,15 +51,11 @@ class Candidates:
     pairs: float32 (n, n), symmetric, 0 to 1: how sure the selector is that both are the hands of one
         person; 0 on the diagonal and for regions that overlap.
     source_size: (width, height) of the frame, pixels.
-    face: centre (x, y) of the diver's face, source pixels; None where none is seen.
+    face: centre (x, y) of the diver's face, source pixels, through which the axis of the body goes; None where none is
+        seen.
     """
 
     regions: tuple[HandRegion, ...]
     pairs: NDArray[np.float32]
     source_size: tuple[int, int]
     face: tuple[float, float] | None = None
-
-    @property
-    def axis(self) -> float | None:
-        """x of the axis of the diver's body, source pixels; None where no face is seen."""
-        return None if self.face is None else self.face[0]

@@ -1,7 +1,8 @@
 """What the decoder says: frozen records, one class per `type`, keys in the documented order.
 
-Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame
-and `time_s` its time stamp in seconds. A pair is (left hand, right hand), the diver's own, or the word of one card.
+Common fields: `source` names the input (None: not named), `frame` is the 0-based index of the frame, `time_s` its time
+stamp in seconds, and `utc` the same as time of day (ISO 8601), put in by whoever knows it. A pair is (left hand, right
+hand), the diver's own, or the word of one card.
 """
 
 from dataclasses import dataclass, field, fields
@@ -13,7 +14,7 @@ from lightgesture.fsm.signs import Shown
 def _plain(value: Any) -> Any:
     if isinstance(value, tuple):
         return list(value)
-    return value.to_dict() if isinstance(value, Growth) else value
+    return value.to_dict() if isinstance(value, Growth | Certainty) else value
 
 
 def _record(event: Any) -> dict[str, Any]:
@@ -33,6 +34,20 @@ class Growth:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Certainty:
+    """How sure the best reading of the open sentence is, under the rule "sentence".
+
+    words: each with how well its sign was seen, 0 to 1. expected: what may follow, for the diver.
+    """
+
+    words: tuple[tuple[str, float], ...]
+    expected: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"words": [list(word) for word in self.words], "expected": self.expected}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Word:
     """A sign was held long enough and has its place in the sentence.
 
@@ -44,6 +59,7 @@ class Word:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     pair: Shown
     word: str
     state: str
@@ -72,6 +88,7 @@ class Instruction:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     start_frame: int
     start_time_s: float
     text: str
@@ -93,7 +110,7 @@ class Rejected:
     """A sentence was dropped.
 
     reason: "out_of_order", "unknown_program", "unknown_parameter", "limit", "timeout", "cancelled", "unread_sign" or
-    "unconfirmed".
+    "unconfirmed"; by the rule "sentence" also "ambiguous", "weak_sign", "passed_over" or "does_not_fit".
     text: the sentence as far as it went, with the word that broke it. detail: why, for the diver.
     """
 
@@ -101,6 +118,7 @@ class Rejected:
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     reason: str
     text: str
     detail: str
@@ -113,19 +131,25 @@ class Rejected:
 class State:
     """For displays: `sentence` has the words so far, `dwell` the hold that is growing.
 
-    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word.
+    state: "idle", "collecting", or "confirming" while a complete sentence waits for its second end word. certainty:
+    how sure the words are; None, and no part of the record, where the rule does not tell.
     """
 
     type: Literal["state"] = field(default="state", init=False)
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     state: str
     sentence: str
     dwell: Growth | None
+    certainty: Certainty | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        return _record(self)
+        record = _record(self)
+        if self.certainty is None:
+            del record["certainty"]
+        return record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,13 +157,15 @@ class Notice:
     """A sign that changed nothing.
 
     reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
-    open) or "confirm" (the end word is wanted again).
+    open), "confirm" (the end word is wanted again), "repeat" (the last sign was seen too badly: show it again) or "gap"
+    (frames are missing or show nothing; an open sentence was dropped).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)
     source: str | None
     frame: int
     time_s: float
+    utc: str | None = None
     reason: str
     detail: str
 

@@ -1,6 +1,6 @@
 """What held signs do to the sentence that is being signed."""
 
-from lightgesture.fsm.events import Growth
+from lightgesture.fsm.events import Certainty, Growth
 from lightgesture.fsm.language.forms import MENU, Form, Item, spell
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.language.table import Arguments, bind
@@ -19,11 +19,11 @@ class Reader:
     """Walks the open sentence through the grammar's table, one held pair after the other, and tells what comes of it.
 
     sentence: the open one, or None. words: what each pair says at this point. unread: is told when a sign was read, or
-    was no word.
+    was no word; None: nobody asks.
     """
 
     def __init__(
-        self, grammar: Grammar, reporter: Reporter, timeline: Timeline, unread: UnreadSigning
+        self, grammar: Grammar, reporter: Reporter, timeline: Timeline, unread: UnreadSigning | None = None
     ) -> None:
         self._grammar = grammar
         self._reporter = reporter
@@ -77,7 +77,8 @@ class Reader:
         return shown[0] if shown[0] in self._grammar.vocabulary.words else None
 
     def _report_unknown(self, pair: Shown) -> None:
-        self._unread.pass_over()
+        if self._unread is not None:
+            self._unread.pass_over()
         if self.sentence is not None:
             self.sentence.has_unknown = True
         inside = self.sentence is not None and pair in self._grammar.idle_words
@@ -88,12 +89,13 @@ class Reader:
         """A word while no sentence is open."""
         row = self._grammar.table.transitions[0]
         if word in row:
-            self._accept(hold, word, row[word], self._begin(hold, word))
+            self._accept(hold, word, row[word], self.begin(hold, word))
         else:
             detail = f"{word} opens no sentence; expected {self.expected}"
             self._reporter.notice("out_of_order", detail)
 
-    def _begin(self, hold: Hold, word: str) -> Sentence:
+    def begin(self, hold: Hold, word: str) -> Sentence:
+        """A sentence is open, whose first word this is, held like this."""
         self.words = self._grammar.menu_words if word == MENU else self._grammar.sentence_words
         self.sentence = Sentence(
             start_frame=hold.first_frame, start_time_s=hold.first_time_s, touched_s=self._timeline.now_s
@@ -111,12 +113,13 @@ class Reader:
 
     def _accept(self, hold: Hold, word: str, target: int, sentence: Sentence) -> None:
         """A word has its place: the sentence goes on or is complete."""
-        self._unread.reset()
+        if self._unread is not None:
+            self._unread.reset()
         sentence.add(word, hold, target, self._timeline.now_s, self._grammar.vocabulary.join)
         form = self._grammar.table.accepting.get(target)
         limits = self._grammar.limits
         if form is not None:
-            self._complete(hold, word, form, sentence)
+            self.conclude(hold, word, form, sentence)
             return
         self._reporter.word(hold, word, sentence.text)
         if sentence.digits > limits.max_digits:
@@ -126,7 +129,7 @@ class Reader:
         else:
             self.show()
 
-    def _complete(self, hold: Hold, word: str, form: Form, sentence: Sentence) -> None:
+    def conclude(self, hold: Hold, word: str, form: Form, sentence: Sentence) -> None:
         """A sentence is complete: issue it, ask for its second end word, or reject it for what it says."""
         arguments = bind(form, sentence.words, self._grammar.table)
         refused = objection(arguments, self._grammar)
@@ -155,7 +158,7 @@ class Reader:
         if self.sentence is not None:
             self.drop("cancelled", f"{word} was signed")
         self._reporter.word(hold, word, IDLE)
-        sentence = self._begin(hold, word)
+        sentence = self.begin(hold, word)
         sentence.add(word, hold, 0, self._timeline.now_s, None)
         alone = Form(kind="kill", sentence=word, items=(Item(frozenset([word]), None, False),))
         self._issue(alone, sentence, Arguments(action=word))
@@ -174,12 +177,6 @@ class Reader:
         self.words = self._grammar.idle_words
         self.show()
 
-    def show(self, growth: Growth | None = None) -> None:
+    def show(self, growth: Growth | None = None, certainty: Certainty | None = None) -> None:
         """Tell displays of the sentence, and of the hold that is growing."""
-        sentence = self.sentence
-        if sentence is None:
-            self._reporter.state(IDLE, "", growth)
-        elif sentence.complete is None:
-            self._reporter.state(COLLECTING, sentence.text, growth)
-        else:
-            self._reporter.state(CONFIRMING, sentence.text, growth)
+        self._reporter.state(self.state, self.text, growth, certainty)

@@ -2,7 +2,7 @@
 
 import math
 
-from lightgesture.fsm.events import Event, Growth, Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm.events import Certainty, Event, Growth, Instruction, Notice, Rejected, State, Word
 from lightgesture.fsm.language.forms import Form
 from lightgesture.fsm.language.table import Arguments
 from lightgesture.fsm.rules.dwell import Hold
@@ -110,7 +110,9 @@ class Reporter:
             )
         )
 
-    def state(self, state: str, sentence: str, growth: Growth | None) -> None:
+    def state(
+        self, state: str, sentence: str, growth: Growth | None, certainty: Certainty | None = None
+    ) -> None:
         """What a display shows from now on."""
         self.shown_s = self._timeline.now_s
         self.is_growth_shown = growth is not None
@@ -122,5 +124,6 @@ class Reporter:
                 state=state,
                 sentence=sentence,
                 dwell=growth,
+                certainty=certainty,
             )
         )

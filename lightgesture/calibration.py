@@ -6,7 +6,7 @@ from typing import Final, Literal
 
 from lightgesture.errors import InputError
 from lightgesture.features.colour import ColourMap, ColourStage
-from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.find.selector import choose, load_selector
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.profile import ColourProfile, Kind
 from lightgesture.features.profile_learning import learn_profile, proposed_share
@@ -145,11 +145,11 @@ class FoundHands:
     """Finds hands picture by picture with the learned choice, which needs no profile."""
 
     def __init__(self) -> None:
-        self._stage = RegionStage("learned")
+        self._find = load_selector("learned")
 
     def boxes(self, colour: ColourMap) -> list[Box]:
         """Boxes of both hands, of one, or of none, source pixels."""
-        hands = choose(self._stage.process(colour), self._stage.settings)
+        hands = choose(self._find.process(colour), self._find.settings)
         return [hand.box for hand in hands]
 
 

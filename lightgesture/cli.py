@@ -12,7 +12,7 @@ from typing import NoReturn, Protocol, cast
 
 from lightgesture._version import __version__
 from lightgesture.console import ReaderGoneError, drop_output, say
-from lightgesture.errors import ExitStatus, InputError, UsageError
+from lightgesture.errors import ExitStatus, InputError, UsageError, defect_of
 from lightgesture.interruption import terminated_as_interrupted
 
 COMMANDS = {
@@ -44,13 +44,13 @@ EXTRAS = {
     "lightgesture.synth": "train",
     "lightgesture.benchmarks": "train",
     "torch": "train",
+    "sklearn": "train",
     "matplotlib": "plots",
     "dask": "cluster",
     "distributed": "cluster",
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
-    "av": "av",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 
@@ -103,6 +103,9 @@ def exit_status(work: Callable[[], int], interrupted: str) -> int:
         return ExitStatus.INTERRUPTED
     except (ReaderGoneError, BrokenPipeError):
         drop_output()
+        return ExitStatus.SOME_FAILED
+    except Exception as error:
+        say(defect_of(error))
         return ExitStatus.SOME_FAILED
 
 

@@ -42,8 +42,31 @@ def print_line(text: str) -> None:
     ReaderGoneError: nobody reads it any more.
     """
     encoding = sys.stdout.encoding or "utf-8"
-    try:
+    with _output_told():
         print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
+
+
+def print_unbuffered(text: str) -> None:
+    """One line on standard output, past its buffer, whose lock a blocked thread would hold while the program ends.
+
+    UsageError, ReaderGoneError: as of `print_line`.
+    """
+    try:
+        descriptor = sys.stdout.fileno()
+    except (OSError, ValueError):  # something else stands in its place
+        print_line(text)
+        return
+    content = (text + "\n").encode(sys.stdout.encoding or "utf-8", "backslashreplace")
+    with _output_told():
+        while content:
+            content = content[os.write(descriptor, content) :]
+
+
+@contextmanager
+def _output_told() -> Iterator[None]:
+    """Tell in our own errors what keeps standard output from taking more."""
+    try:
+        yield
     except BrokenPipeError as error:
         raise ReaderGoneError from error
     except OSError as error:

@@ -68,6 +68,8 @@ class FrontEnd(ABC):
     """
 
     clock: StageClock
+    tokens: tuple[str, ...] | None = None
+    """What it can read, for the grammar to be checked against; None: any word."""
 
     def __init__(self) -> None:
         self.clock = StageClock()

@@ -2,24 +2,46 @@
 
 import os
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from copy import copy
+from dataclasses import replace
+from datetime import datetime
 from typing import Any, Self
 
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.profile import load_profile
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd, StageClock
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
-from lightgesture.hands import HandReader, ReadingStage
+from lightgesture.fsm.language.settings import SENTENCE, Rule
+from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.memory import memory_for_hold
 from lightgesture.hands.pictures import PictureSink, with_text
-from lightgesture.models import load_classifier
+from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
-from lightgesture.records import FrameRecord, Record, SummaryRecord
-from lightgesture.threads import OneBlasThread
+from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
+
+
+class OneBlasThread:
+    """Makes blocks in which matrix products run in one thread; after a block the old number holds again.
+
+    The classifier's products are tiny: a second thread gains nothing, and where other work keeps the cores busy, the
+    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds. Only libraries that are
+    loaded when the object is made are limited, so NumPy must be.
+    """
+
+    def __init__(self) -> None:
+        from threadpoolctl import ThreadpoolController
+
+        self._libraries = ThreadpoolController().select(user_api="blas")
+
+    def block(self) -> AbstractContextManager[object]:
+        """A context with one thread."""
+        limited: AbstractContextManager[object] = self._libraries.limit(limits=1)
+        return limited
 
 
 class Pipeline:
@@ -34,11 +56,18 @@ class Pipeline:
     the diver's hands, which replaces the map of skin colours; None for that map. mirrored: frames come from a selfie
     camera.
 
-    The decoder: hold: consecutive frames that a sign is held; hold_seconds: seconds instead; both None for the
-    grammar's own. grammar: path of a grammar file, None for the bundled one.
+    threshold: least probability of a token, 0 to 1; None for the reader's own.
+
+    The decoder: rule: "frames", "seconds", "evidence" or "sentence", None for the grammar's own. hold: consecutive
+    frames that a sign is held; hold_seconds: seconds instead; both None for the grammar's own. caution: of the rule
+    "sentence", how sure a sentence must be, None for the grammar's own. grammar: path of a grammar file, None for the
+    bundled one.
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.
+
+    start_utc: the moment at which time_s is 0, if that is known; it may be set before any frame, and gives the records
+    their `utc`.
     Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
     lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
     """
@@ -52,8 +81,11 @@ class Pipeline:
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
+        threshold: float | None = None,
+        rule: Rule | None = None,
         hold: int | None = None,
         hold_seconds: float | None = None,
+        caution: float | None = None,
         grammar: str | os.PathLike[str] | None = None,
         source: str | None = None,
         frames: bool = True,
@@ -65,18 +97,32 @@ class Pipeline:
                 "selector": selector != "learned",
                 "profile": profile is not None,
                 "mirrored": mirrored,
+                "threshold": threshold is not None,
             }
             _refuse("front end", of_hands)
         if decoder is not None:
-            of_decoder = {"hold": hold, "hold_seconds": hold_seconds, "grammar": grammar}
+            of_decoder = {
+                "rule": rule,
+                "hold": hold,
+                "hold_seconds": hold_seconds,
+                "caution": caution,
+                "grammar": grammar,
+            }
             _refuse("decoder", {name: value is not None for name, value in of_decoder.items()})
         if decoder is None:
-            decoder = Decoder(load_grammar(grammar), hold=hold, hold_seconds=hold_seconds, source=source)
+            decoder = Decoder(
+                load_grammar(grammar),
+                rule=rule,
+                hold=hold,
+                hold_seconds=hold_seconds,
+                caution=caution,
+                source=source,
+            )
         if front is None:
             need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
-                ReadingStage(load_classifier(model)),
-                find=RegionStage(selector),
+                ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
+                find=load_selector(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
                 memory=lambda: memory_for_hold(*need),
                 mirrored=mirrored,
@@ -95,6 +141,14 @@ class Pipeline:
         """Let go of the nets; what is asked to decode after raises ValueError. Others of `for_stream` go on."""
         self.front = _ClosedFront(self.front.clock)
 
+    def check_language(self) -> str | None:
+        """A line that warns of signs that the grammar does not know; None where it knows all that is read.
+
+        Raises lightgesture.models.ModelError where the grammar has tokens that are never read.
+        """
+        tokens = self.front.tokens
+        return None if tokens is None else check_classes(tokens, self.decoder.grammar.tokens)
+
     def for_stream(self, source: str | None, debug: PictureSink | None = None) -> Self:
         """Another pipeline of the same settings, for another stream, with what this one has loaded.
 
@@ -108,6 +162,7 @@ class Pipeline:
     def _begin(self, source: str | None, debug: PictureSink | None) -> None:
         """Everything that is counted over the stream."""
         self._source, self._debug = source, debug
+        self.start_utc: datetime | None = None
         self._index = 0
         self._processed = 0
         self._seconds = 0.0
@@ -136,12 +191,20 @@ class Pipeline:
         records: list[Record] = [self._record(index, time_s)] if self._frames else []
         return records + self._count(events)
 
+    def interrupt(self, detail: str, time_s: float, index: int | None = None) -> list[Record]:
+        """Something is missing before the next frame, whose stamp and index these are: no sentence spans it.
+
+        detail: what is missing, in words. `lightgesture.watch` finds what no source tells of.
+        """
+        return self._count(self.decoder.interrupt(detail, time_s, index))
+
     def finish(self) -> list[Record]:
         """What is pending at the end of the stream, then the summary."""
         pending = self._count(self.decoder.finish())
         summary = SummaryRecord(
             source=self._source,
             frames=self._processed,
+            utc=utc_text(self.start_utc, self._seconds),
             seconds=round(self._seconds, 6),
             instructions=self._counts[Instruction],
             rejected=self._counts[Rejected],
@@ -167,13 +230,30 @@ class Pipeline:
         return picture
 
     def _record(self, index: int | None, time_s: float | None) -> FrameRecord:
-        return FrameRecord(source=self._source, frame=index, time_s=time_s, **self.front.shown())
+        is_told = time_s is not None and self.decoder.rule == SENTENCE
+        utc = utc_text(self.start_utc, time_s)
+        return FrameRecord(
+            source=self._source,
+            frame=index,
+            time_s=time_s,
+            utc=utc,
+            probabilities=is_told,
+            **self.front.shown(),
+        )
 
     def _count(self, events: list[Event]) -> list[Record]:
         for event in events:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
-        return list(events)
+        if self.start_utc is None:
+            return list(events)
+        return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
+
+
+def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:
+    """How hands are read for a rule: "sentence" wants to know where the extents of a hand differ."""
+    settings = ReadingSettings(extents="mean" if rule == SENTENCE else "clearest")
+    return settings if threshold is None else replace(settings, token_probability=threshold)
 
 
 class _ClosedFront(FrontEnd):

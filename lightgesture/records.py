@@ -1,15 +1,19 @@
 """The records of frames and summaries; words, instructions and the rest are the events of `fsm`.
 
-Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the
-documented order.
+Every record is frozen, has `type`, and `to_dict()` gives the object that `--json` prints, keys in the documented order.
+`utc` is the time of day, ISO 8601; None where the source has no absolute clock.
 """
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from datetime import UTC, datetime, timedelta
+from typing import Any, Final, Literal
 
 from lightgesture.features.types import Box
 from lightgesture.fsm import Event
+
+LEAST_TOLD: Final = 0.005
+"""Smallest probability in a record, 0 to 1: what is below changes no reading."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +23,7 @@ class Hand:
     side: "left" or "right", the diver's own. token: one of the ten, or None with a `reason`
     ("low_confidence", "unknown_shape", "partial", "occluded"). confidence: 0 to 1, calibrated.
     box: outline of the hand without the forearm, source pixels. track: number of the track, None in single pictures.
-    probabilities: of every class, 0 to 1, before the refusal; no part of the record.
+    probabilities: of every class, 0 to 1, before the refusal; part of the record only where it is asked for.
     """
 
     side: str
@@ -30,8 +34,9 @@ class Hand:
     reason: str | None
     probabilities: Mapping[str, float] = field(default_factory=dict, compare=False, repr=False)
 
-    def to_dict(self) -> dict[str, Any]:
-        return {
+    def to_dict(self, probabilities: bool = False) -> dict[str, Any]:
+        """probabilities: tell those from LEAST_TOLD up too."""
+        record: dict[str, Any] = {
             "side": self.side,
             "token": self.token,
             "confidence": self.confidence,
@@ -39,17 +44,28 @@ class Hand:
             "track": self.track,
             "reason": self.reason,
         }
+        if probabilities:
+            rounded = {name: round(chance, 3) for name, chance in self.probabilities.items()}
+            record["probabilities"] = {
+                name: chance for name, chance in rounded.items() if chance >= LEAST_TOLD
+            }
+        return record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameRecord:
-    """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture."""
+    """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture.
+
+    probabilities: whether the record has those of the hands, which the rule "sentence" reads.
+    """
 
     type: Literal["frame"] = field(default="frame", init=False)
     source: str | None
     frame: int | None
     time_s: float | None
+    utc: str | None = None
     hands: tuple[Hand, ...] = ()
+    probabilities: bool = False
 
     def to_dict(self) -> dict[str, Any]:
         return {
@@ -57,7 +73,8 @@ class FrameRecord:
             "source": self.source,
             "frame": self.frame,
             "time_s": self.time_s,
-            "hands": [hand.to_dict() for hand in self.hands],
+            "utc": self.utc,
+            "hands": [hand.to_dict(self.probabilities) for hand in self.hands],
         }
 
 
@@ -65,12 +82,14 @@ class FrameRecord:
 class SummaryRecord:
     """Totals of one source.
 
-    frames: number processed. seconds: time of the last frame. ms_per_frame: "median" and "p95" of
-    the whole pipeline, milliseconds. stages_ms: median milliseconds of each stage.
+    frames: number processed. seconds, utc: time of the last frame. status: "ok", or "failed" for a source that broke
+    off or showed hardly anything. ms_per_frame: "median" and "p95" of the whole pipeline, milliseconds. stages_ms:
+    median milliseconds of each stage.
     """
 
     type: Literal["summary"] = field(default="summary", init=False)
     source: str | None
+    utc: str | None = None
     frames: int
     seconds: float
     instructions: int
@@ -95,6 +114,7 @@ class HeartbeatRecord:
     type: Literal["heartbeat"] = field(default="heartbeat", init=False)
     source: str | None
     time_s: float
+    utc: str | None = None
     frames: int
     dropped: int
     ms_per_frame: float
@@ -102,6 +122,17 @@ class HeartbeatRecord:
 
     def to_dict(self) -> dict[str, Any]:
         return asdict(self)
+
+
+def utc_text(start: datetime | None, time_s: float | None) -> str | None:
+    """The moment `time_s` seconds after `start`, ISO 8601 in UTC to the millisecond; None where either is unknown."""
+    if start is None or time_s is None:
+        return None
+    try:
+        moment = start.astimezone(UTC) + timedelta(seconds=time_s)
+    except (OverflowError, ValueError):  # a stamp that is no time
+        return None
+    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 Record = FrameRecord | SummaryRecord | HeartbeatRecord | Event

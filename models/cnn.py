@@ -55,13 +55,8 @@ class CnnClassifier:
 
     def __init__(self, model: CnnModel, backend: Backend = "auto") -> None:
         """backend: "litert", "numpy", or "auto" for the first that is installed. Raises NetworkError."""
-        self.model = model
+        self.model, self.classes = model, model.classes
         self._network = Network(model.network, backend)
-
-    @property
-    def classes(self) -> tuple[str, ...]:
-        """Names of the columns of `probabilities`."""
-        return self.model.classes
 
     def scores(self, patches: NDArray[np.uint8]) -> Float:
         """Scores of patches, uint8 (n, size, size, 3), BGR -> float32 (n, k)."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lightgesture.features.net.file import network_from
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
-from lightgesture.models.archive import check_kind, positive, read_model, settings_from
+from lightgesture.models.archive import check_kind, positive, settings_from
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel
 from lightgesture.models.errors import ModelError
 
@@ -19,11 +19,6 @@ FORMAT: Final = 2
 
 NET: Final = "net"
 """Beginning of the names of the net's members."""
-
-
-def read_cnn_model(path: Path) -> CnnModel:
-    """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
-    return cnn_model_from(path, *read_model(path))
 
 
 def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CnnModel:

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,29 @@ class Classifier(Protocol):
         ...
 
 
+def _cnn(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> Classifier:
+    from lightgesture.features.net.network import NetworkError
+    from lightgesture.models.cnn import CnnClassifier
+    from lightgesture.models.cnn_file import cnn_model_from
+
+    try:
+        return CnnClassifier(cnn_model_from(path, header, arrays))
+    except NetworkError as error:
+        raise ModelError(f"{path}: {error}") from error
+
+
+def _svm(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> Classifier:
+    from lightgesture.models.svm import SvmClassifier
+    from lightgesture.models.svm_file import svm_model_from
+
+    return SvmClassifier(svm_model_from(path, header, arrays))
+
+
+KINDS: Final = {"cnn": _cnn, "svm": _svm}
+"""Kind of a model file to what makes a classifier of its content; each imports its own, for the net's run-time takes
+longer to load than all of the other."""
+
+
 def load_classifier(model: str | os.PathLike[str] = DEFAULT) -> Classifier:
     """The classifier called `model`, "cnn" or "svm", or read from the model file at that path.
 
@@ -44,17 +67,5 @@ def load_classifier(model: str | os.PathLike[str] = DEFAULT) -> Classifier:
     """
     path = SHIPPED.get(str(model), Path(model))
     header, arrays = read_model(path)
-    # Each kind is imported when it is asked for: the net's run-time takes longer to load than all of the other.
-    if header.get("kind") == "cnn":
-        from lightgesture.features.net.network import NetworkError
-        from lightgesture.models.cnn import CnnClassifier
-        from lightgesture.models.cnn_file import cnn_model_from
-
-        try:
-            return CnnClassifier(cnn_model_from(path, header, arrays))
-        except NetworkError as error:
-            raise ModelError(f"{path}: {error}") from error
-    from lightgesture.models.svm import SvmClassifier
-    from lightgesture.models.svm_file import svm_model_from
-
-    return SvmClassifier(svm_model_from(path, header, arrays))
+    # What is of no kind is refused by the checks of either.
+    return KINDS.get(str(header.get("kind")), _svm)(path, header, arrays)

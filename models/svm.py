@@ -48,12 +48,8 @@ class SvmClassifier:
     def __init__(self, model: SvmModel) -> None:
         # Column by column in memory: the product with few hands then reads the centres in one sweep.
         self.model = replace(model, centres=np.asfortranarray(model.centres))
+        self.classes = model.classes
         self._squares = squared_lengths(model.centres)
-
-    @property
-    def classes(self) -> tuple[str, ...]:
-        """Names of the columns of `probabilities`."""
-        return self.model.classes
 
     def project(self, vectors: Float) -> Float:
         """Feature vectors (n, d) in the kernel's space, float32 (n, p)."""

@@ -14,7 +14,7 @@ from lightgesture.features.hog import HogSettings
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings, block_lengths
-from lightgesture.models.archive import check_kind, positive, read_model, settings_from
+from lightgesture.models.archive import check_kind, positive, settings_from
 from lightgesture.models.errors import ModelError
 
 Float = NDArray[np.float32]
@@ -52,11 +52,6 @@ class SvmModel:
     gamma: float
     temperature: float
     smallest_hand: int
-
-
-def read_svm_model(path: Path) -> SvmModel:
-    """Read a model file; raises ModelError naming the file, what is wrong with it and what to do."""
-    return svm_model_from(path, *read_model(path))
 
 
 def svm_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> SvmModel:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.archive import HEADER
 from lightgesture.features.find import selector_file
-from lightgesture.features.find.bank import bank_arrays
-from lightgesture.features.find.selector_file import Selector
+from lightgesture.features.find.bank import Bank
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
 from lightgesture.features.find.trees import Trees
 from lightgesture.models import cnn_file, svm_file
 from lightgesture.models.cnn import CnnModel
@@ -51,9 +51,8 @@ def write_svm_model(model: SvmModel, path: Path) -> None:
     _write(path, header, arrays)
 
 
-def write_selector(selector: Selector, path: Path) -> None:
-    """Write the selector's file. Raises UsageError where the place cannot be written."""
-    learned, classical = selector.learned, selector.classical
+def write_selector(classical: ClassicalParts, learned: LearnedParts, path: Path) -> None:
+    """Write the selector's file, which serves either choice. Raises UsageError where the place cannot be written."""
     arrays = {
         **_tree_arrays("regions", classical.regions),
         **_tree_arrays("region_pairs", classical.pairs),
@@ -75,6 +74,17 @@ def write_json(content: Mapping[str, Any], path: Path) -> None:
 def _tree_arrays(part: str, trees: Trees) -> dict[str, NDArray[Any]]:
     names = (*selector_file.TREE_ARRAYS, *selector_file.TREE_NUMBERS)
     return {f"{part}_{name}": np.asarray(getattr(trees, name)) for name in names}
+
+
+def bank_arrays(prefix: str, bank: Bank) -> dict[str, NDArray[Any]]:
+    """All that a bank holds, under names that begin with `prefix`."""
+    return {
+        f"{prefix}_classes": np.array(bank.classes, np.str_),
+        f"{prefix}_centres": bank.centres.astype(np.float32),
+        f"{prefix}_owner": bank.owner.astype(np.int16),
+        f"{prefix}_points": np.array(bank.settings.points, np.int32),
+        f"{prefix}_harmonics": np.array(bank.settings.harmonics, np.int32),
+    }
 
 
 def _write(path: Path, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:

@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy  # noqa: F401 - only libraries that are loaded can be limited to one thread
 
     from lightgesture.config.opening import make_folder
-    from lightgesture.threads import OneBlasThread
+    from lightgesture.pipeline import OneBlasThread
 
     if args.target != SUITE and (args.only or (args.quick and not args.clips)):
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")

@@ -21,7 +21,7 @@ from lightgesture.features.find.classical import describe_regions, other_extents
 from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
 from lightgesture.features.find.locator import logistic
 from lightgesture.features.find.proposals import LEVELS, Proposals, propose
-from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.find.selector_file import (
     ClassicalParts,
     LearnedParts,
@@ -33,6 +33,7 @@ from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.skin_map import redness, stretch
 from lightgesture.features.types import Box, Candidates, HandRegion
+from lightgesture.hands import Finder
 
 Float = NDArray[np.float32]
 Search = Callable[[ColourMap], Candidates]
@@ -43,7 +44,7 @@ ONE_THRESHOLD = 2
 """Two levels are one threshold, in the middle of the range."""
 
 
-class ChangedStage(RegionStage):
+class ChangedStage:
     """A region stage that searches otherwise, or believes otherwise what was found.
 
     search: in place of the selector's own. change: of all that is found. follows: whether predicted boxes are looked
@@ -57,17 +58,18 @@ class ChangedStage(RegionStage):
         change: Callable[[Candidates], Candidates] | None = None,
         follows: bool = True,
     ) -> None:
-        super().__init__(selector)
+        self._own = load_selector(selector)
+        self.settings = self._own.settings
         self._search, self._change, self._follows = search, change, follows
 
     def process(self, colour: ColourMap) -> Candidates:
         """Search one frame."""
-        found = super().process(colour) if self._search is None else self._search(colour)
+        found = self._own.process(colour) if self._search is None else self._search(colour)
         return found if self._change is None else self._change(found)
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
         """Look at predicted boxes, where this stage does."""
-        found = super().follow(colour, boxes) if self._follows else None
+        found = self._own.follow(colour, boxes) if self._follows else None
         return found if found is None or self._change is None else self._change(found)
 
 
@@ -215,7 +217,7 @@ def _classical_variants(parts: ClassicalParts) -> list[Method]:
     bank = ClassicalSearch(parts, bank_scores(parts), has_trees=False)
     level = ClassicalSearch(parts, level_scores, has_trees=False)
     alone = ChangedStage("classical", change=without_pairs(CLASSICAL))
-    plain = RegionStage("classical")
+    plain = load_selector("classical")
     return [
         whole,
         _with("classical: one threshold", ChangedStage("classical", one)),
@@ -227,5 +229,5 @@ def _classical_variants(parts: ClassicalParts) -> list[Method]:
     ]
 
 
-def _with(name: str, stage: RegionStage) -> Method:
+def _with(name: str, stage: Finder) -> Method:
     return variant(name, Stages(regions=lambda: stage))

@@ -17,9 +17,10 @@ from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import PEAK_MEMORY, SIZE, WARM_UP, Image, limited_threads
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.find.selector import RegionStage, SelectorName
+from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.types import Box, Candidates
 from lightgesture.front_end import StageClock
+from lightgesture.hands import Finder
 from lightgesture.sources import DEFAULT_FPS
 
 LITERT = "ai_edge_litert"
@@ -81,7 +82,7 @@ def without_litert() -> Iterator[None]:
 class WatchedRegions:
     """A region stage that tells of each frame whether it was searched as a whole."""
 
-    def __init__(self, stage: RegionStage) -> None:
+    def __init__(self, stage: Finder) -> None:
         self._stage = stage
         self.settings = stage.settings
         self.searches = 0
@@ -96,12 +97,12 @@ class WatchedRegions:
         return self._stage.follow(colour, boxes)
 
 
-def open_stage(engine: Engine) -> RegionStage:
+def open_stage(engine: Engine) -> Finder:
     """The bundled selector with its run-time."""
     if engine.uses_litert:
-        return RegionStage(engine.selector)
+        return load_selector(engine.selector)
     with without_litert():
-        return RegionStage(engine.selector)
+        return load_selector(engine.selector)
 
 
 def time_finding(frames: Sequence[Image], engine: Engine, rounds: int) -> list[dict[str, Cell]]:

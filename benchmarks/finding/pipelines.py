@@ -17,7 +17,7 @@ from lightgesture.benchmarks.finding.regions import Run, run_sequence, run_singl
 from lightgesture.benchmarks.methods import Image, PipelineMethod
 from lightgesture.benchmarks.progress import Progress
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.selector import SELECTORS, RegionStage, SelectorName
+from lightgesture.features.find.selector import SELECTORS, SelectorName, load_selector
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.profile import ColourProfile
@@ -81,7 +81,7 @@ def selector_method(
         selector, file = SELECTORS[0], selector
     name: SelectorName = "classical" if selector == "classical" else "learned"
     label = name if file is None else f"{name}, {Path(file).stem}"
-    stage = RegionStage(name, file)
+    stage = load_selector(name, file)
     if profile is None:
         return variant(label, Stages(regions=lambda: stage))
     coloured = Stages(colour=lambda: ColourStage(profile=profile), regions=lambda: stage)

@@ -14,8 +14,8 @@ from lightgesture.benchmarks.contact_sheet import Image, arranged
 from lightgesture.benchmarks.reading.hands import HandAnswer
 from lightgesture.benchmarks.reading.reliability import calibration_error, reliability_bins
 from lightgesture.benchmarks.scorer import confusion
-from lightgesture.models import in_order
 from lightgesture.sources import read_picture
+from lightgesture.training.samples import in_order
 
 TILE_WIDTH, PICTURE_HEIGHT = 160, 150
 """Pixels of a tile and of the hand in it: crops are at most 112 wide."""

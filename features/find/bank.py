@@ -24,10 +24,6 @@ Float = NDArray[np.float32]
 
 OTHER: Final = "other"
 """Name of the class of outlines that are no hands."""
-OTHER_TIMES: Final = 4
-"""Centres of other things for one of each hand class: they are far more varied than one sign."""
-ROUNDS: Final = 30
-"""Most rounds of k-means; it settles in fewer."""
 SMALLEST_SPREAD: Final = 1e-6
 """Pixels; outlines spread less than this round their centre are points and are not enlarged to size 1."""
 MOST_CENTRES: Final = 4096
@@ -157,83 +153,8 @@ def _transform(settings: DescriptorSettings) -> tuple[Float, Float]:
     return matrix.astype(np.float32), np.stack([cosine, sine]).astype(np.float32)
 
 
-def build_bank(
-    contours_by_class: Mapping[str, Sequence[Contour]],
-    per_class: int,
-    seed: int,
-    settings: DescriptorSettings | None = None,
-) -> Bank:
-    """A bank of at most `per_class` centres for each class, `OTHER_TIMES` as many for `OTHER`.
-
-    contours_by_class: outlines as `describe_outlines` takes them; their mirror images count too, because either hand
-    may make a sign. A class with fewer outlines than centres gives them all. The same arguments give the same bank.
-    Raises ValueError for a class without an outline, or no class.
-    """
-    settings = settings or DescriptorSettings()
-    rng = np.random.default_rng(seed)
-    centres, owner = [], []
-    for index, (name, contours) in enumerate(contours_by_class.items()):
-        if not contours or per_class < 1:
-            raise ValueError(
-                f"class {name!r} has {len(contours)} outlines for {per_class} centres; give one at least"
-            )
-        described = describe_outlines(contours, settings)
-        count = per_class * (OTHER_TIMES if name == OTHER else 1)
-        found = k_means(np.concatenate([described, mirrored(described)]), count, rng)
-        centres.append(found)
-        owner.append(np.full(len(found), index, np.int16))
-    if not centres:
-        raise ValueError("no classes; give the outlines of one at least")
-    return Bank(tuple(contours_by_class), np.concatenate(centres), np.concatenate(owner), settings)
-
-
-# In quotes, for the name alone would load NumPy's random numbers, which only training draws.
-def k_means(points: Float, count: int, rng: "np.random.Generator") -> Float:
-    """`count` centres of points, float32 (n, d) -> (min(n, count), d).
-
-    Lloyd's rounds from the seeding of Arthur and Vassilvitskii, "k-means++: The Advantages of Careful Seeding", 2007.
-    """
-    if len(points) <= count:
-        return points
-    chosen = [int(rng.integers(len(points)))]
-    nearest = np.square(points - points[chosen[0]]).sum(axis=1)
-    while len(chosen) < count and nearest.sum() > 0.0:
-        chosen.append(int(rng.choice(len(points), p=nearest / nearest.sum())))
-        nearest = np.minimum(nearest, np.square(points - points[chosen[-1]]).sum(axis=1))
-    centres = points[chosen].astype(np.float64)
-    assigned = np.full(len(points), -1)
-    for _ in range(ROUNDS):
-        squares = np.square(centres).sum(axis=1) - 2.0 * points @ centres.T
-        before, assigned = assigned, squares.argmin(axis=1)
-        if np.array_equal(before, assigned):
-            break
-        sums = np.zeros_like(centres)
-        np.add.at(sums, assigned, points)
-        sizes = np.bincount(assigned, minlength=len(centres))[:, None]
-        # A centre that lost its last point stays where it was.
-        centres = np.where(sizes > 0, sums / np.maximum(sizes, 1), centres)
-    return np.asarray(centres, np.float32)
-
-
-def mirrored(descriptors: Float) -> Float:
-    """Descriptors of the same outlines flipped left to right, float32 (n, settings.length)."""
-    half = descriptors.shape[1] // 2
-    return np.concatenate([-descriptors[:, :half], descriptors[:, half:]], axis=1)
-
-
-def bank_arrays(prefix: str, bank: Bank) -> dict[str, NDArray[Any]]:
-    """All that a bank holds, under names that begin with `prefix`."""
-    return {
-        f"{prefix}_classes": np.array(bank.classes, np.str_),
-        f"{prefix}_centres": bank.centres.astype(np.float32),
-        f"{prefix}_owner": bank.owner.astype(np.int16),
-        f"{prefix}_points": np.array(bank.settings.points, np.int32),
-        f"{prefix}_harmonics": np.array(bank.settings.harmonics, np.int32),
-    }
-
-
 def bank_from(arrays: Mapping[str, NDArray[Any]], prefix: str) -> Bank:
-    """The bank that `bank_arrays` stored. Raises KeyError or ValueError."""
+    """The bank of a file's arrays, whose names begin with `prefix`. Raises KeyError or ValueError."""
     centres = arrays[f"{prefix}_centres"]
     if centres.ndim != 2 or len(centres) > MOST_CENTRES or centres.shape[1] > LONGEST_DESCRIPTOR:
         raise ValueError(f"centres of shape {centres.shape} are no bank")

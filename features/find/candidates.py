@@ -8,7 +8,7 @@ other, stand apart, have one skin, and a face between them.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -20,6 +20,10 @@ from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 
 Float = NDArray[np.float32]
+Rows = NDArray[np.float64]
+"""float64 (n, 9), a candidate a row: box x, y, width, height in working pixels; score, its predicted IoU with a hand;
+strength, how clearly it stands out (the level of its threshold or the heat of its peak; only the difference between two
+counts); mean blue, green and red inside, 0 to 1."""
 Point = tuple[float, float]
 
 PLACE_COLUMNS: Final = 14
@@ -38,18 +42,6 @@ FAR: Final = 9.0
 """Stands for the distance of a face where none is seen, in hand sizes."""
 DARKEST: Final = 0.02
 """Added to mean colours (0 to 1) before their ratio is taken, about five grey levels."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Candidate:
-    """A scored region. box: float32 (4,), x, y, width, height, working pixels. score: predicted IoU with a hand.
-    strength: how clearly it stands out, the level of its threshold or the heat of its peak; only the difference
-    between two counts. colour: float32 (3,), mean blue, green and red inside, 0 to 1."""
-
-    box: Float
-    score: float
-    strength: float
-    colour: Float
 
 
 def best_distinct(overlap: NDArray[np.float64], scores: Float) -> list[int]:
@@ -99,16 +91,29 @@ def describe_places(peaks: Peaks, refined: Refined, size: tuple[int, int]) -> Fl
     ).astype(np.float32)
 
 
-def describe_pairs(
-    first: Sequence[Candidate], second: Sequence[Candidate], size: tuple[int, int], face: Point | None
-) -> Float:
-    """float32 (pairs, PAIR_COLUMNS), one row for each first with its second, the same whichever of the two comes first.
+def candidate_rows(
+    boxes: NDArray[np.float32 | np.int32],
+    scores: Float,
+    strengths: NDArray[np.float32 | np.uint8],
+    colours: Sequence[Float],
+) -> Rows:
+    """The rows of n candidates: boxes (n, 4), scores (n,), strengths (n,), n mean colours (3,); see `Rows`."""
+    return np.column_stack([boxes, scores, strengths, np.reshape(colours, (-1, 3))]).astype(np.float64)
 
-    size: (width, height) of the working picture. face: centre of the likeliest face, None where none is seen.
+
+def pair_numbers(
+    candidates: Rows, size: tuple[int, int], face: Point | None
+) -> tuple[list[tuple[int, int]], Float]:
+    """All pairs of candidates that overlap at most `APART_IOU`, and their numbers, float32 (pairs, PAIR_COLUMNS).
+
+    A pair has the same numbers whichever of the two comes first. size: (width, height) of the working picture. face:
+    centre of the likeliest face, None where none is seen.
     """
-    if not first:
-        return np.zeros((0, PAIR_COLUMNS), np.float32)
-    a, b = _table(first), _table(second)
+    overlap = pairwise_iou(candidates[:, :4], candidates[:, :4])
+    pairs = [(i, j) for i, j in combinations(range(len(candidates)), 2) if overlap[i, j] <= APART_IOU]
+    if not pairs:
+        return [], np.zeros((0, PAIR_COLUMNS), np.float32)
+    a, b = (candidates[list(places)] for places in zip(*pairs, strict=True))
     swapped = a[:, 0] + a[:, 2] / 2 > b[:, 0] + b[:, 2] / 2
     a[swapped], b[swapped] = b[swapped], a[swapped]
     sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
@@ -118,7 +123,7 @@ def describe_pairs(
     middle = (centres_a + centres_b) / 2
     contrast = np.log((a[:, 6:] + DARKEST) / (b[:, 6:] + DARKEST))
     to_face = np.full((len(a), 2), FAR) if face is None else (np.array(face) - middle) / unit[:, None]
-    return np.column_stack(
+    numbers = np.column_stack(
         [
             np.minimum(a[:, 4], b[:, 4]),
             np.maximum(a[:, 4], b[:, 4]),
@@ -136,29 +141,11 @@ def describe_pairs(
             np.abs(to_face[:, 0]),
             to_face[:, 1],
         ]
-    ).astype(np.float32)
+    )
+    return pairs, numbers.astype(np.float32)
 
 
-def _table(candidates: Sequence[Candidate]) -> NDArray[np.float64]:
-    """float64 (n, 9): box, score, strength, colour."""
-    return np.array([(*item.box, item.score, item.strength, *item.colour) for item in candidates], np.float64)
-
-
-def pair_numbers(
-    candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None
-) -> tuple[list[tuple[int, int]], Float]:
-    """All pairs of candidates that overlap at most `APART_IOU`, and their numbers, float32 (pairs, PAIR_COLUMNS)."""
-    boxes = np.array([item.box for item in candidates]).reshape(-1, 4)
-    overlap = pairwise_iou(boxes, boxes)
-    count = len(candidates)
-    pairs = [(i, j) for i in range(count) for j in range(i + 1, count) if overlap[i, j] <= APART_IOU]
-    first, second = [candidates[i] for i, _ in pairs], [candidates[j] for _, j in pairs]
-    return pairs, describe_pairs(first, second, size, face)
-
-
-def score_pairs(
-    trees: Trees, candidates: Sequence[Candidate], size: tuple[int, int], face: Point | None
-) -> Float:
+def score_pairs(trees: Trees, candidates: Rows, size: tuple[int, int], face: Point | None) -> Float:
     """float32 (n, n), symmetric, 0 to 1: how well each two candidates go together; 0 for those that overlap."""
     together = np.zeros((len(candidates), len(candidates)), np.float32)
     pairs, rows = pair_numbers(candidates, size, face)

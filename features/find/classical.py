@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
 from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
-from lightgesture.features.find.candidates import Candidate, best_distinct, score_pairs
+from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, score_pairs
 from lightgesture.features.find.proposals import Proposals, fill_contour, propose
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
+from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
-from lightgesture.features.types import Candidates, HandRegion
+from lightgesture.features.types import Box, Candidates, HandRegion
 
 Float = NDArray[np.float32]
 
@@ -42,25 +43,19 @@ def describe_regions(colour: ColourMap, proposals: Proposals, bank: Bank) -> Flo
     return np.column_stack(numbers).astype(np.float32)
 
 
-def candidate(colour: ColourMap, proposals: Proposals, index: int, score: float) -> Candidate:
-    """The numbers of one proposal that its pairs need."""
+def mean_colour(colour: ColourMap, proposals: Proposals, index: int) -> Float:
+    """float32 (3,): mean blue, green and red inside the outline of a proposal, 0 to 1."""
     x, y, width, height = (int(value) for value in proposals.boxes[index])
     mask = fill_contour(proposals.contours[index], (x, y, width, height))
     means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
-    return Candidate(
-        box=proposals.boxes[index].astype(np.float32),
-        score=score,
-        strength=float(proposals.levels[index]),
-        colour=np.array(means, np.float32) / np.float32(255.0),
-    )
+    return np.array(means, np.float32) / np.float32(255.0)
 
 
-def scored_candidates(
-    colour: ColourMap, proposals: Proposals, scores: Float
-) -> tuple[list[int], list[Candidate]]:
+def scored_candidates(colour: ColourMap, proposals: Proposals, scores: Float) -> tuple[list[int], Rows]:
     """Numbers of the proposals that go on to pairing, and what their pairs need."""
     kept = best_distinct(pairwise_iou(proposals.boxes, proposals.boxes), scores)
-    return kept, [candidate(colour, proposals, index, float(scores[index])) for index in kept]
+    colours = [mean_colour(colour, proposals, index) for index in kept]
+    return kept, candidate_rows(proposals.boxes[kept], scores[kept], proposals.levels[kept], colours)
 
 
 def other_extents(proposals: Proposals, scores: Float, kept: Sequence[int]) -> list[list[int]]:
@@ -89,6 +84,8 @@ def _region(
 class ClassicalSelector:
     """Colour map -> candidates with scores, by trees on regions of the skin map."""
 
+    settings: SelectorSettings = CLASSICAL
+
     def __init__(self, parts: ClassicalParts) -> None:
         self._parts = parts
 
@@ -106,3 +103,8 @@ class ClassicalSelector:
             for index, extents in zip(kept, other_extents(proposals, scores, kept), strict=True)
         )
         return Candidates(regions, together, colour.source_size)
+
+    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+        """None: this choice cannot but search."""
+        del colour, boxes
+        return None

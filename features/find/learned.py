@@ -9,14 +9,16 @@ import numpy as np
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.candidates import (
     APART_IOU,
-    Candidate,
+    Rows,
     best_distinct,
+    candidate_rows,
     describe_places,
     score_pairs,
 )
 from lightgesture.features.find.locator import Locator, Peaks, find_peaks
 from lightgesture.features.find.refiner import Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
+from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.network import IntegerNetwork
@@ -48,6 +50,8 @@ class Places:
 class LearnedSelector:
     """Colour map -> candidates with scores, by locator and refiner."""
 
+    settings: SelectorSettings = LEARNED
+
     def __init__(self, parts: LearnedParts) -> None:
         self._nets = Places(parts.locator, parts.refiner)
         self._places, self._pairs = parts.places, parts.pairs
@@ -66,7 +70,7 @@ class LearnedSelector:
         return Candidates(found, together, colour.source_size, face)
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates:
-        """Look only at predicted boxes, source pixels: far quicker than a search, and blind for what is elsewhere.
+        """Look only at predicted boxes, one or more, source pixels: far quicker than a search, and blind for the rest.
 
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
         of a pair is the lower one.
@@ -83,21 +87,13 @@ class LearnedSelector:
         return Candidates(regions_at(colour, refined.boxes[kept], scores), together, colour.source_size)
 
 
-def scored_places(
-    colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float
-) -> tuple[list[int], list[Candidate]]:
+def scored_places(colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float) -> tuple[list[int], Rows]:
     """Numbers of the distinct places, best first, and what their pairs need."""
     kept = best_distinct(pairwise_iou(refined.boxes, refined.boxes), scores)
-    items = [
-        Candidate(
-            refined.boxes[index],
-            float(scores[index]),
-            float(peaks.heat[index]),
-            mean_colour(colour, refined.boxes[index]),
-        )
-        for index in kept
-    ]
-    return kept, items
+    boxes = refined.boxes[kept]
+    return kept, candidate_rows(
+        boxes, scores[kept], peaks.heat[kept], [mean_colour(colour, box) for box in boxes]
+    )
 
 
 def mean_colour(colour: ColourMap, box: Float) -> Float:

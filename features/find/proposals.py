@@ -67,37 +67,33 @@ class Proposals:
         return len(self.contours)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Region:
-    box: Box
-    contour: Contour
-    level: int
-    cut: bool
-
-
-def _regions_at(skin: Image, threshold: int) -> list[_Region]:
+def _contours_at(skin: Image, threshold: int) -> list[Contour]:
     """Outer contours of the pixels at or above `threshold` whose boxes may hold a hand."""
     mask = cv2.threshold(skin, threshold - 1, 255, cv2.THRESH_BINARY)[1]
     contours = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     shorter = min(skin.shape)
     low, high = SMALLEST_SIDE * shorter, LARGEST_SIDE * shorter
-    regions = []
+    found = []
     for contour in contours:
         if len(contour) < SHORTEST_CONTOUR:
             continue
-        box = cv2.boundingRect(contour)
-        short, long = min(box[2], box[3]), max(box[2], box[3])
+        short, long = sorted(cv2.boundingRect(contour)[2:])
         if low <= short and long <= high and long <= LARGEST_ASPECT * short:
-            points = contour.reshape(-1, 2).astype(np.int32, copy=False)
-            regions.append(_Region((box[0], box[1], box[2], box[3]), points, threshold, cut=False))
-    return regions
+            found.append(contour.reshape(-1, 2).astype(np.int32, copy=False))
+    return found
 
 
-def _distinct(regions: list[_Region]) -> list[_Region]:
-    """Keep the first of each group of regions whose boxes nearly agree, as many as are wanted."""
-    boxes = np.array([region.box for region in regions], np.int32).reshape(-1, 4)
+def _distinct(contours: list[Contour], levels: list[int], cut: list[bool]) -> Proposals:
+    """The first of each group of regions whose boxes nearly agree, as many as are wanted."""
+    boxes = np.array([cv2.boundingRect(contour) for contour in contours], np.int32).reshape(-1, 4)
     same = pairwise_iou(boxes, boxes) > SAME_IOU
-    return [regions[index] for index in keep_distinct(same, range(len(regions)), MOST)]
+    kept = keep_distinct(same, range(len(contours)), MOST)
+    return Proposals(
+        boxes=boxes[kept],
+        contours=tuple(contours[index] for index in kept),
+        levels=np.array(levels, np.uint8)[kept],
+        cut=np.array(cut, bool)[kept],
+    )
 
 
 def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
@@ -105,26 +101,25 @@ def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
 
     levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range.
     """
-    found: list[_Region] = []
+    found: list[Contour] = []
+    thresholds: list[int] = []
     for level in range(levels - 1, 0, -1):
-        found += _regions_at(colour.skin, level * 256 // levels)
+        threshold = level * 256 // levels
+        found += _contours_at(colour.skin, threshold)
+        thresholds += [threshold] * (len(found) - len(thresholds))
         # The reddest regions come first, so specks at the low levels are what a flood loses.
         if len(found) >= 4 * MOST:
             break
-    whole = _distinct(found)
-    hands = []
-    for region in whole:
-        contour = cut_forearm(region.contour, region.box)
-        if contour is not None:
-            x, y, width, height = cv2.boundingRect(contour)
-            hands.append(_Region((x, y, width, height), contour, region.level, cut=True))
-    regions = _distinct(whole + hands)
-    return Proposals(
-        boxes=np.array([region.box for region in regions], np.int32).reshape(-1, 4),
-        contours=tuple(region.contour for region in regions),
-        levels=np.array([region.level for region in regions], np.uint8),
-        cut=np.array([region.cut for region in regions], bool),
-    )
+    whole = _distinct(found, thresholds, [False] * len(found))
+    contours, thresholds = list(whole.contours), whole.levels.tolist()
+    for contour, (x, y, width, height), threshold in zip(
+        whole.contours, whole.boxes.tolist(), whole.levels.tolist(), strict=True
+    ):
+        hand = cut_forearm(contour, (x, y, width, height))
+        if hand is not None:
+            contours.append(hand)
+            thresholds.append(threshold)
+    return _distinct(contours, thresholds, [index >= len(whole) for index in range(len(contours))])
 
 
 def fill_contour(contour: Contour, box: Box, border: int = 0) -> Image:

@@ -5,7 +5,6 @@ box on a table looks like a hand, but seldom has a partner of its size at its he
 """
 
 import os
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Literal
@@ -17,46 +16,29 @@ from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.classical import ClassicalSelector
 from lightgesture.features.find.learned import LearnedSelector
 from lightgesture.features.find.selector_file import load_classical, load_learned
-from lightgesture.features.find.settings import ALONE_CONFIDENCE, CLASSICAL, LEARNED, SelectorSettings
+from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
-from lightgesture.features.types import Box, Candidates, HandRegion, Side
+from lightgesture.features.types import Candidates, HandRegion, Side
 
 SelectorName = Literal["learned", "classical"]
 SELECTORS: tuple[SelectorName, ...] = ("learned", "classical")
 
 
-class RegionStage:
-    """Colour map -> candidates with scores."""
+def load_selector(
+    selector: SelectorName = "learned", file: str | os.PathLike[str] | None = None
+) -> LearnedSelector | ClassicalSelector:
+    """What finds candidates.
 
-    def __init__(
-        self,
-        selector: SelectorName = "learned",
-        file: str | os.PathLike[str] | None = None,
-    ) -> None:
-        """selector: "learned" or "classical". file: of `lightgesture train regions`, None for the bundled one.
-
-        Raises SelectorError, or ValueError for another selector.
-        """
-        if selector not in SELECTORS:
-            raise ValueError(f"selector {selector!r}: must be learned or classical")
-        self.settings: SelectorSettings
-        self._source: LearnedSelector | ClassicalSelector
-        if selector == "learned":
-            self.settings, self._source = LEARNED, LearnedSelector(load_learned(file))
-        else:
-            self.settings, self._source = CLASSICAL, ClassicalSelector(load_classical(file))
-
-    def process(self, colour: ColourMap) -> Candidates:
-        """Search one frame. A frame without contrast gives no candidates."""
-        return self._source.process(colour)
-
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
-        """Candidates at predicted boxes alone, source pixels; None where the selector cannot but search."""
-        if isinstance(self._source, LearnedSelector) and boxes:
-            return self._source.follow(colour, boxes)
-        return None
+    selector: "learned" or "classical". file: of `lightgesture train regions`, None for the bundled one. Raises
+    SelectorError, or ValueError for another selector.
+    """
+    if selector not in SELECTORS:
+        raise ValueError(f"selector {selector!r}: must be learned or classical")
+    if selector == "learned":
+        return LearnedSelector(load_learned(file))
+    return ClassicalSelector(load_classical(file))
 
 
 def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | None:
@@ -65,11 +47,6 @@ def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | Non
         return None
     first, second = np.unravel_index(int(pairs.argmax()), pairs.shape)
     return (int(first), int(second)), float(pairs[first, second])
-
-
-def side_of_axis(box: Box, axis: float) -> Side:
-    """The side of a hand by where it is of the body's axis, x in pixels of an unmirrored picture."""
-    return "right" if box[0] + box[2] / 2 < axis else "left"
 
 
 def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegion]:
@@ -86,8 +63,8 @@ def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegio
         ]
     if candidates.regions and candidates.regions[0].confidence >= settings.single_score:
         one = candidates.regions[0]
-        axis = candidates.source_size[0] / 2 if candidates.axis is None else candidates.axis
-        side = side_of_axis(one.box, axis)
+        axis = candidates.source_size[0] / 2 if candidates.face is None else candidates.face[0]
+        side: Side = "right" if one.box[0] + one.box[2] / 2 < axis else "left"
         sure = ALONE_CONFIDENCE
         return [replace(one, side=side, confidence=one.confidence * sure, certainty=sure)]
     return []
@@ -111,9 +88,9 @@ def find_hands(
 
 
 @lru_cache(maxsize=len(SELECTORS))
-def _stage(selector: SelectorName) -> RegionStage:
+def _stage(selector: SelectorName) -> LearnedSelector | ClassicalSelector:
     """Read once, because a caller asks for picture after picture."""
-    return RegionStage(selector)
+    return load_selector(selector)
 
 
 def outlined(colour: ColourMap, region: HandRegion) -> HandRegion:

@@ -61,14 +61,6 @@ class LearnedParts:
     pairs: Trees
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Selector:
-    """What is needed for either choice."""
-
-    classical: ClassicalParts
-    learned: LearnedParts
-
-
 def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts:
     """The classical choice of a file; without a path, of the bundled one. Raises SelectorError."""
 

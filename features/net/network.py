@@ -109,17 +109,6 @@ class IntegerNetwork:
         return self.weights[node.name].scales.astype(np.float64) * own.scale / result.scale
 
 
-def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArray[np.int8]:
-    """Nearest integers, clipped to int8."""
-    levels = np.rint(np.asarray(values) * np.float32(1.0 / quantisation.scale)) + quantisation.zero
-    return np.asarray(np.clip(levels, -128, 127), np.int8)
-
-
-def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> NDArray[np.float32]:
-    """What the integers stand for."""
-    return (levels.astype(np.float32) - np.float32(quantisation.zero)) * np.float32(quantisation.scale)
-
-
 def same_padding(size: int, kernel: int, stride: int) -> tuple[int, int]:
     """Rows before and after, so that the output has ceil(size / stride) rows."""
     total = max((-(-size // stride) - 1) * stride + kernel - size, 0)

@@ -12,10 +12,9 @@ from lightgesture.features.net.network import (
     IntegerNetwork,
     LiteRtFile,
     NetworkError,
+    Quantisation,
     Shape,
-    dequantise,
     infer_shapes,
-    quantise,
 )
 from lightgesture.features.net.reference import NumpyRunner
 
@@ -24,6 +23,17 @@ Backend = Literal["auto", "litert", "numpy"]
 
 MOST_PLANNED: Final = 16
 """Sizes of input that are kept ready: a folder of pictures of many sizes must not fill the memory."""
+
+
+def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArray[np.int8]:
+    """Nearest integers, clipped to int8."""
+    levels = np.rint(np.asarray(values) * np.float32(1.0 / quantisation.scale)) + quantisation.zero
+    return np.asarray(np.clip(levels, -128, 127), np.int8)
+
+
+def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> NDArray[np.float32]:
+    """What the integers stand for."""
+    return (levels.astype(np.float32) - np.float32(quantisation.zero)) * np.float32(quantisation.scale)
 
 
 class Runner(Protocol):

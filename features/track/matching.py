@@ -212,13 +212,13 @@ def gated(
     precision = precision_of(motion, LEAP_NOISE if leap else 0.0)
     matches = {}
     for index, region in regions.items():
-        extent, least = region.box, squared_distance(motion, precision, region.box)
+        extent, least = 0, squared_distance(motion, precision, region.box)
         if least > 9.0 * gate:
             continue
-        for box in region.alternatives:
+        for number, box in enumerate(region.alternatives, start=1):
             squared = squared_distance(motion, precision, box)
             if squared < least:
-                extent, least = box, squared
+                extent, least = number, squared
         if least <= gate:
             matches[index] = Match(index, region, extent, least, leap)
     return matches

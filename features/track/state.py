@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
+from lightgesture.features.find.settings import ALONE_CONFIDENCE
 from lightgesture.features.track.kalman import BoxState, box_of, meets, start_box, stop, update_box
 from lightgesture.features.types import Box, HandRegion, Side
 
@@ -33,13 +34,13 @@ AXIS_CERTAINTY: Final = 0.9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Match:
-    """What a track found: the region that has the number `index` among the candidates. extent: the box of the region
-    that is nearest to what was expected; squared: its squared Mahalanobis distance; leap: whether it is beyond the
-    gate."""
+    """What a track found: the region that has the number `index` among the candidates. extent: which of the region's
+    extents is nearest to what was expected, 0 its box, then its alternatives; squared: its squared Mahalanobis
+    distance; leap: whether it is beyond the gate."""
 
     index: int
     region: HandRegion
-    extent: Box
+    extent: int
     squared: float
     leap: bool
 
@@ -111,9 +112,10 @@ def begin(key: int, index: int, region: HandRegion, now: float) -> Track:
 def seen(track: Track, match: Match, now: float, step: float) -> Track:
     """The predicted track after it found its region; after a leap what was known of its motion is void."""
     region = match.region
+    nearest = (region.box, *region.alternatives)[match.extent]
     return replace(
         track,
-        motion=start_box(region.box) if match.leap else update_box(track.motion, match.extent),
+        motion=start_box(region.box) if match.leap else update_box(track.motion, nearest),
         box=region.box,
         region=match.index,
         confidence=region.confidence,
@@ -191,16 +193,16 @@ def _opposite(side: Side) -> Side:
     return "left" if side == "right" else "right"
 
 
-def with_lone_side(track: Track, axis: float | None, width: int, by_middle: float) -> Track:
+def with_lone_side(track: Track, axis: float | None, width: int) -> Track:
     """The track with a better guess of its side, if its side is a guess: made at its birth, by the picture's middle
     if need be, and once more when the body's axis is first seen. It does not change as the hand moves on.
 
-    axis: x of the body's axis where it is seen; width: that of the picture, pixels; by_middle: certainty of a side that
-    is told by the picture's middle.
+    axis: x of the body's axis where it is seen; width: that of the picture, pixels.
     """
     if track.basis in ("pair", "axis") or (track.basis == "middle" and axis is None):
         return track
     x = track.motion[0].position
     if axis is None:
-        return replace(track, side="right" if x < width / 2 else "left", basis="middle", certainty=by_middle)
+        side: Side = "right" if x < width / 2 else "left"
+        return replace(track, side=side, basis="middle", certainty=ALONE_CONFIDENCE)
     return replace(track, side="right" if x < axis else "left", basis="axis", certainty=AXIS_CERTAINTY)

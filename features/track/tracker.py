@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from operator import attrgetter
 from typing import Final
 
-from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
+from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import box_iou
 from lightgesture.features.track import births
 from lightgesture.features.track.births import PairEvidence, PairKey
@@ -220,8 +220,8 @@ class Tracker:
             single = births.believed_single(hands, tentative, selection.single_score, margin)
             if single is not None:
                 self._keep((single,))
-        axis, width = candidates.axis, candidates.source_size[0]
-        self._hands = [with_lone_side(track, axis, width, ALONE_CONFIDENCE) for track in self._hands]
+        axis = None if candidates.face is None else candidates.face[0]
+        self._hands = [with_lone_side(track, axis, candidates.source_size[0]) for track in self._hands]
 
     def _keep(self, believed: tuple[Track, ...]) -> None:
         """Follow these, and of the others only what is under observation."""

@@ -15,7 +15,7 @@ from lightgesture.fsm.language.document import key_path, parse_document
 from lightgesture.fsm.language.forms import MENU, SELECT, Form, FormError, Item, Vocabulary, parse_form
 from lightgesture.fsm.language.grammar import Defect, Grammar, GrammarError
 from lightgesture.fsm.language.schema import GrammarFile
-from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter, SentenceSettings
 from lightgesture.fsm.language.table import Table, compile_table, walk
 from lightgesture.fsm.signs import Pair
 
@@ -84,6 +84,7 @@ def compile_grammar(content: GrammarFile, file: str, defects: list[Defect]) -> G
         },
         limits=Limits(**content.limits.model_dump()),
         dwell=DwellSettings(**content.dwell.model_dump()),
+        sentence=SentenceSettings(**content.sentence.model_dump()),
         control=Control(
             cancel=content.control.cancel,
             kill=content.control.kill,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from lightgesture.fsm.language.forms import Vocabulary
-from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter
+from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter, SentenceSettings
 from lightgesture.fsm.language.table import Table
 from lightgesture.fsm.signs import Pair
 
@@ -56,4 +56,5 @@ class Grammar:
     parameters: Mapping[int, Parameter]
     limits: Limits
     dwell: DwellSettings
+    sentence: SentenceSettings
     control: Control

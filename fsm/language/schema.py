@@ -10,13 +10,16 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-from lightgesture.fsm.language.settings import DwellSettings, Limits, Rule
+from lightgesture.fsm.language.settings import DwellSettings, Limits, Rule, SentenceSettings
 
 MAX_HOLD = 1000
 """Longest hold that a file may ask for, frames: 16 s at 60 frames a second."""
 
 MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 """Shortest and longest hold that a file may ask for, seconds."""
+
+MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
+"""Least and greatest caution that a file may ask for."""
 
 MAX_UNREAD = 100.0
 """Longest unread signing, holds: no time-out is later, so that this much turns the rule off."""
@@ -54,6 +57,7 @@ TOKEN = r"[A-Za-z0-9_]{1,32}"
 
 _LIMITS = Limits()
 _DWELL = DwellSettings()
+_SENTENCE = SentenceSettings()
 
 
 def _matching(pattern: str, noun: str, remedy: str) -> Callable[[str], str]:
@@ -173,6 +177,15 @@ class DwellTable(_Table):
     timeout_s: float = Field(default=_DWELL.timeout_s, gt=0, le=MAX_TIMEOUT_S, allow_inf_nan=False)
 
 
+class SentenceTable(_Table):
+    """[sentence]"""
+
+    caution: float = Field(default=_SENTENCE.caution, ge=MIN_CAUTION, le=MAX_CAUTION, allow_inf_nan=False)
+    hold_seconds: float = Field(
+        default=_SENTENCE.hold_seconds, ge=MIN_HOLD_S, le=MAX_HOLD_S, allow_inf_nan=False
+    )
+
+
 class GrammarFile(_Table):
     """The whole file."""
 
@@ -187,6 +200,7 @@ class GrammarFile(_Table):
     menu: MenuTable | None = None
     limits: LimitsTable = Field(default_factory=LimitsTable)
     dwell: DwellTable = Field(default_factory=DwellTable)
+    sentence: SentenceTable = Field(default_factory=SentenceTable)
 
 
 TABLES: dict[str, type[BaseModel]] = {
@@ -194,6 +208,7 @@ TABLES: dict[str, type[BaseModel]] = {
     "forms": FormTable,
     "limits": LimitsTable,
     "dwell": DwellTable,
+    "sentence": SentenceTable,
     "control": ControlTable,
     "menu": MenuTable,
     "parameters": ParameterTable,

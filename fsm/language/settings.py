@@ -1,10 +1,13 @@
 """Numbers that a grammar file may set: one documented place for each, with its unit and effect."""
 
-from dataclasses import dataclass
-from typing import Literal
+import math
+from dataclasses import dataclass, replace
+from typing import Final, Literal, Self
 
-Rule = Literal["frames", "seconds", "evidence"]
-"""How a dwell tells that a pair was held for long enough."""
+Rule = Literal["frames", "seconds", "evidence", "sentence"]
+"""How it is told what was signed: by each sign on its own, held for long enough, or by the whole sentence."""
+
+SENTENCE: Final = "sentence"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -29,14 +32,15 @@ class DwellSettings:
 
     rule: "frames", an unbroken run of `hold` frames (the paper's); "seconds", an unbroken run of `hold_seconds`,
     whatever the camera's rate; "evidence", until the pair's seconds, weighed by their probability, less those of
-    anything else, come to `hold_seconds`. hold: frames, 1 to 1000; hold_seconds: 0.05 to 60. More gives fewer
-    false words and slower signing. release: fraction of the hold, 0 to 1 and at least one frame, that a pair must be
-    absent before it counts again; less lets a flicker double a word. unread: how long, as a multiple of the hold, hands
-    may be seen between two words without a word: more loses a sentence less often, and a sign of it more often. It must
-    be less than a hold and two passages from sign to sign, and more than one passage. passage_s: seconds that they
-    may be seen in any case, 0 to 10: the longest passage, for holds that are shorter. count_hidden: whether time
-    without a hand in view counts as well, for it may hide a sign; hands may then not be lowered inside a sentence.
-    timeout_s: seconds without an accepted word that drop an open sentence.
+    anything else, come to `hold_seconds`; "sentence": the best reading of the whole sentence, see `SentenceSettings`.
+    hold: frames, 1 to 1000; hold_seconds: 0.05 to 60. More gives fewer false words and slower signing. release:
+    fraction of the hold, 0 to 1 and at least one frame, that a pair must be absent before it counts again; less lets
+    a flicker double a word. unread: how long, as a multiple of the hold, hands may be seen between two words without
+    a word: more loses a sentence less often, and a sign of it more often. It must be less than a hold and two
+    passages from sign to sign, and more than one passage. passage_s: seconds that they may be seen in any case, 0 to
+    10: the longest passage, for holds that are shorter. count_hidden: whether time without a hand in view counts as
+    well, for it may hide a sign; hands may then not be lowered inside a sentence. timeout_s: seconds without an
+    accepted word that drop an open sentence.
     """
 
     rule: Rule = "frames"
@@ -50,12 +54,35 @@ class DwellSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SentenceSettings:
+    """How the rule "sentence" reads."""
+
+    caution: float = 1.0
+    """How sure a sentence must be, 0.1 to 10: every bound is that many times as strict. Less issues more of what is
+    meant, and more that is wrong."""
+    hold_seconds: float = 0.4
+    """Least length of a sign, seconds, 0.05 to 60. Less: signs may be shorter, and more is read in passing."""
+
+    def changed(self, hold_seconds: float | None, caution: float | None) -> Self:
+        """The same with what is given in its place. ValueError: out of range."""
+        if hold_seconds is not None and not 0.0 < hold_seconds < math.inf:
+            raise ValueError(f"hold_seconds is {hold_seconds:g}; use a number above 0, such as 0.4")
+        if caution is not None and not 0.0 < caution < math.inf:
+            raise ValueError(f"caution is {caution:g}; use a number above 0, such as 1")
+        return replace(
+            self,
+            hold_seconds=self.hold_seconds if hold_seconds is None else hold_seconds,
+            caution=self.caution if caution is None else caution,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Control:
     """Words that are no part of a sentence, and those that need a second end word; None and empty: there are none.
 
     cancel: drops the open sentence. kill: is heard in every state and issued at once. confirm: words whose sentences
-    need the end word twice; the name of a word that carries a number stands for all of its numbers. confirm_unknown: so
-    do sentences in which a pair was held that is no word, for it may have been a word that was misread.
+    need the end word twice; the name of a word that carries a number stands for all of its numbers. confirm_unknown:
+    so do sentences in which a pair was held that is no word, for it may have been a word that was misread.
     """
 
     cancel: str | None = None

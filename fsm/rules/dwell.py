@@ -9,11 +9,13 @@ wrong frames delay a sign and do not break it.
 
 import math
 from dataclasses import dataclass
+from typing import Final
 
-from lightgesture.fsm.language.settings import DwellSettings
+from lightgesture.fsm.language.settings import DwellSettings, Rule
 from lightgesture.fsm.signs import Shown
 
-FRAMES, EVIDENCE = "frames", "evidence"
+FRAMES: Final = "frames"
+EVIDENCE: Final = "evidence"
 """Rules that are asked for by name here; what is neither is "seconds"."""
 
 TOLERANCE_S = 0.001
@@ -169,8 +171,10 @@ class Dwell:
         self._is_absent = False
 
 
-def make_dwell(settings: DwellSettings, hold: int | None, hold_seconds: float | None) -> Dwell:
-    """The dwell of a grammar's settings, or of the frames or seconds that take their place.
+def make_dwell(
+    settings: DwellSettings, hold: int | None, hold_seconds: float | None, rule: Rule | None = None
+) -> Dwell:
+    """The dwell of a grammar's settings, or of the rule, the frames or the seconds that take their place.
 
     Seconds make a timed hold, and of the rule of evidence the evidence that it needs. ValueError: a hold out of range,
     or both.
@@ -181,8 +185,13 @@ def make_dwell(settings: DwellSettings, hold: int | None, hold_seconds: float | 
         raise ValueError(f"hold is {hold} frames; use a whole number from 1, such as 15")
     if hold_seconds is not None and not 0.0 < hold_seconds < math.inf:
         raise ValueError(f"hold_seconds is {hold_seconds:g}; use a number above 0, such as 0.5")
-    if hold is not None or (hold_seconds is None and settings.rule == FRAMES):
+    if rule == FRAMES and hold_seconds is not None:
+        raise ValueError("hold_seconds: the rule frames goes by frames; use hold")
+    rule = rule or (FRAMES if hold is not None else settings.rule)
+    if hold is not None and rule != FRAMES:
+        raise ValueError(f"hold: the rule {rule} goes by seconds; use hold_seconds")
+    if rule == FRAMES and hold_seconds is None:
         frames = settings.hold if hold is None else hold
         return Dwell(frames, release_frames(frames, settings.release))
     seconds = settings.hold_seconds if hold_seconds is None else hold_seconds
-    return Dwell(seconds, seconds * settings.release, timed=True, weighed=settings.rule == EVIDENCE)
+    return Dwell(seconds, seconds * settings.release, timed=True, weighed=rule == EVIDENCE)

@@ -11,7 +11,7 @@ from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.features.profile import Kind, save_profile
 from lightgesture.features.types import Box
 from lightgesture.results.atomic import replacing
-from lightgesture.sources import SourceOptions, StreamFrames, open_any
+from lightgesture.sources import StreamFrames, open_any
 
 
 def run_calibrate(
@@ -30,8 +30,7 @@ def run_calibrate(
     that separates poorly too. InputError: there are no hands, or it separates poorly. UsageError: `hands` or `out`.
     """
     file, place = _out(out), _place(hands)
-    options = SourceOptions(settings.fps, settings.width_height, settings.topic, settings.insecure)
-    with open_any(source_name, options) as source:
+    with open_any(source_name, settings.source_options) as source:
         if isinstance(source, StreamFrames):
             say(f"{source.name}: hold both open hands still before the camera for {seconds:g} s")
         result = calibrate(source, kind, place, seconds)

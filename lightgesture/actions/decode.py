@@ -21,11 +21,8 @@ from lightgesture.results.ownership import ANNOTATED
 SAMPLE = Path(__file__).resolve().parents[1] / "data" / "sample.mp4"
 """The bundled clip, decoded where no input is named."""
 
-_EXTRAS = {
-    "annotate": ("av", "PyAV", "lightgesture[av]"),
-    "plot": ("matplotlib", "matplotlib", "lightgesture[plots]"),
-}
-"""Option to the package that it needs, its name, and what to install."""
+_BESIDE_RESULTS = ("annotate", "plot")
+"""Options whose files need a folder of results."""
 
 
 def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
@@ -68,15 +65,13 @@ def usable_cores() -> int:
 
 
 def _check(settings: DecodeSettings) -> None:
-    for option, (module, name, requirement) in _EXTRAS.items():
-        if not getattr(settings, option):
-            continue
-        if not settings.out:
+    for option in _BESIDE_RESULTS:
+        if getattr(settings, option) and not settings.out:
             raise UsageError(
                 f"--{option}: its file lies beside the other results; name a folder with --out DIR"
             )
-        if importlib.util.find_spec(module) is None:
-            raise UsageError(f"--{option} needs {name}; pip install '{requirement}'")
+    if settings.plot and importlib.util.find_spec("matplotlib") is None:
+        raise UsageError("--plot needs matplotlib; pip install 'lightgesture[plots]'")
 
 
 def _tasks(inputs: Sequence[str], settings: DecodeSettings) -> list[Task]:

@@ -1,4 +1,4 @@
-"""What `grammar` does: a grammar file is checked, shown, drawn, or led through a sequence of pairs.
+"""What `grammar` does: a grammar file is begun, checked, shown, drawn, or led through pairs or a recording.
 
 path: of the file, None for the bundled one. UsageError: it cannot be read, or not be used.
 """
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from lightgesture.console import print_line
 from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.fsm import Grammar, GrammarError, load_grammar
-from lightgesture.grammar.report import check, explain, show
+from lightgesture.grammar.report import check, explain, init, show
 
 Path = str | None
 
@@ -34,9 +34,18 @@ def draw_grammar(path: Path, out: str) -> ExitStatus:
     return _print([draw(_load(path), out)])
 
 
-def explain_pairs(path: Path, sequence: str) -> ExitStatus:
-    """Print what each pair of a sequence does."""
-    return _print(explain(_load(path), sequence))
+def init_grammar(file: str) -> ExitStatus:
+    """Write the bundled grammar where no file is yet."""
+    return _print([init(file)])
+
+
+def explain_signs(path: Path, sequence: str) -> ExitStatus:
+    """Print what each pair of a sequence does, or what became of the sentences of a recording (`.jsonl`)."""
+    if not sequence.endswith(".jsonl"):
+        return _print(explain(_load(path), sequence))
+    from lightgesture.grammar.replay import explain_records
+
+    return _print(explain_records(_load(path), sequence))
 
 
 def _load(path: Path) -> Grammar:

@@ -5,19 +5,20 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from datetime import UTC, datetime, timedelta
 from typing import Final
 
-from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
-from lightgesture.console import say
+from lightgesture.console import print_unbuffered, say
 from lightgesture.errors import ExitStatus
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
-from lightgesture.sinks.printer import PrinterSink, print_unbuffered
-from lightgesture.sources import SourceOptions, live_source, refuse_missing_device
+from lightgesture.sinks.printer import PrinterSink
+from lightgesture.sources import live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -41,13 +42,13 @@ def run_live(
     UsageError: the source, an option, the model or the grammar is wrong.
     """
     refuse_missing_device(source_name)
-    source = live_source(source_name, SourceOptions(size=settings.width_height, insecure=settings.insecure))
+    source = live_source(source_name, settings.source_options)
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()
     clock = _make_clock()
     mailbox = Mailbox()
-    pipeline = open_pipeline(_for_pipeline(settings), source.name, debug)
+    pipeline = open_stream(_for_pipeline(settings), source.name, debug, report)
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
@@ -68,6 +69,7 @@ def run_live(
             frames=settings.frames,
             debug=debug,
             heartbeat_s=heartbeat_s,
+            start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
         )
         loop.run(stopping)
     if not settings.quiet:
@@ -79,7 +81,8 @@ def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
     a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
     changes: dict[str, object] = {"frames": True}
-    if settings.hold is None and settings.hold_seconds is None and settings.grammar is None:
+    given = settings.rule, settings.hold, settings.hold_seconds, settings.grammar
+    if given == (None, None, None, None):
         changes["hold_seconds"] = HOLD_S
     return settings.model_copy(update=changes)
 

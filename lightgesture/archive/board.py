@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from typing import Any, Self
 
-from lightgesture.archive.tasks import Advanced, Done, Message, Opened, Outcome, Printed, Task
+from lightgesture.archive.tasks import Advanced, Done, Message, Opened, Outcome, Printed, Remarked, Task
 from lightgesture.console import Bars, one_line, print_line, say
 
 
@@ -23,6 +23,8 @@ class Board:
         self._bars = Bars(quiet)
         self._of_task: dict[int, Any] = {}
         self._of_all: Any = None
+        self._remarks: set[str] = set()
+        self._quiet = quiet
         self.outcomes: dict[int, Outcome] = {}
 
     def __enter__(self) -> Self:
@@ -45,6 +47,10 @@ class Board:
                 self._bars.advance(self._of_all, message.frames)
             case Printed():
                 self._lines[message.place] += message.lines
+            case Remarked():
+                if not self._quiet and message.text not in self._remarks:
+                    say(message.text)
+                self._remarks.add(message.text)
             case Done():
                 self.outcomes[message.place] = message.outcome
                 self._bars.remove(self._of_task.pop(message.place, None))

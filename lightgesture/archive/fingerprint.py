@@ -8,12 +8,9 @@ from pathlib import Path
 
 from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
-from lightgesture.config.settings import BUILT_IN_MODELS, PATH_OPTIONS, DecodeSettings
+from lightgesture.config.settings import BUILT_IN_MODELS, NO_INFLUENCE, PATH_OPTIONS, DecodeSettings
 from lightgesture.sources import is_picture_name
 from lightgesture.sources.bag import is_bag
-
-NO_INFLUENCE = frozenset({"as_json", "cluster", "give_up", "insecure", "jobs", "out", "quiet", "recursive"})
-"""Settings that change no file of results; any other, also one that is added later, makes them anew."""
 
 _ROOMS_WITH_DATA = ("features", "models")
 

@@ -1,19 +1,21 @@
 """One input through the pipeline, records to files and messages.
 
-An input that fails before its first frame leaves no file. One that fails later, a video that ends early, keeps what
-was decoded: its records and its files end with a summary whose status is "failed". An interrupted input leaves no file.
+An input that fails before its first frame leaves no file. One that fails later, a video that ends early or shows hardly
+anything, keeps what was decoded: its records and its files end with a summary whose status is "failed". An interrupted
+input leaves no file.
 """
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Task
-from lightgesture.config.opening import make_debug_pictures, open_pipeline
+from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Remarked, Task
+from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
-from lightgesture.errors import InputError
+from lightgesture.console import ReaderGoneError
+from lightgesture.errors import InputError, UsageError, defect_of
 from lightgesture.frames import Frame
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, Record, SummaryRecord
@@ -30,6 +32,7 @@ from lightgesture.results import (
 )
 from lightgesture.results.ownership import ANNOTATED
 from lightgesture.sources import Source
+from lightgesture.watch import Watch
 
 
 class Runner:
@@ -50,19 +53,24 @@ class Runner:
         """
         start = time.perf_counter()
         debug = make_debug_pictures(self._settings, task.stem)
-        pipeline = self._open_pipeline(task.name, debug)
+        pipeline = self._open_pipeline(task, debug, hear)
         try:
             outcome = _Work(task, self._settings, pipeline, debug, self._encoding, hear).run()
         except InputError as error:
             outcome = Outcome("failed", str(error))
+        except (UsageError, ReaderGoneError, BrokenPipeError, ModuleNotFoundError):
+            raise
+        except Exception as error:
+            # A stage, ours or one that was given, must not take the other inputs with it.
+            outcome = Outcome("failed", f"{task.name}: {defect_of(error)}")
         return replace(outcome, seconds=time.perf_counter() - start)
 
-    def _open_pipeline(self, name: str, debug: DebugPictures | None) -> Pipeline:
+    def _open_pipeline(self, task: Task, debug: DebugPictures | None, hear: Hear) -> Pipeline:
         if self._pipeline is None:
             needs_frames = self._settings.frames or self._settings.annotate or self._settings.plot
             settings = self._settings.model_copy(update={"frames": needs_frames})
-            self._pipeline = open_pipeline(settings, None, None)
-        return self._pipeline.for_stream(name, debug)
+            self._pipeline = open_stream(settings, None, None, lambda text: hear(Remarked(task.place, text)))
+        return self._pipeline.for_stream(task.name, debug)
 
 
 class _Work:
@@ -84,12 +92,14 @@ class _Work:
         self._video: AnnotatedVideo | None = None
         self._files: list[str] = []
         self._summary: SummaryRecord | None = None
+        self._watch = Watch()
 
     def run(self) -> Outcome:
         """InputError: no frame could be decoded."""
         with ExitStack() as stack:
             source = stack.enter_context(self._task.open(self._settings))
             self._hear(Opened(self._task.place, source.frame_count))
+            self._pipeline.start_utc = source.start_utc
             self._open_files(stack)
             failure = self._process(source)
         summary = self._summary
@@ -138,13 +148,20 @@ class _Work:
             if not is_begun:
                 raise
             failure = error
+        if failure is None and self._watch.is_blank:
+            text = "most frames show nothing, all pixels being the same; look at the camera, or convert the input"
+            failure = InputError(f"{source.name}: {text}")
         self._write(_finish(self._pipeline, is_failed=failure is not None))
         return failure
 
     def _process_frame(self, frame: Frame) -> None:
         if self._debug is not None:
             self._debug.select(frame.time_s)
-        records: Sequence[Record] = self._pipeline.process(frame.image, frame.time_s, frame.index)
+        hole = self._watch.look(frame.image, frame.time_s)
+        records: list[Record] = []
+        if (gap := frame.gap or hole) is not None:
+            records += self._pipeline.interrupt(gap, frame.time_s, frame.index)
+        records += self._pipeline.process(frame.image, frame.time_s, frame.index)
         if self._video is not None:
             self._video.write(frame.image, frame.time_s, records)
         self._write(records)

@@ -56,7 +56,7 @@ class Task:
             raise InputError(f"{self.name}: is an annotated copy; decode the video that it was made of")
 
         def open_one(path: str) -> Source:
-            return open_source(path, settings.fps, size=settings.width_height, topic=settings.topic)
+            return open_source(path, settings.source_options)
 
         return JoinedVideos(self.chapters, open_one) if self.chapters else open_one(self.path)
 
@@ -114,7 +114,15 @@ class Done:
     outcome: Outcome
 
 
-Message = Opened | Advanced | Printed | Done
+@dataclass(frozen=True, slots=True)
+class Remarked:
+    """Something to be told once, whichever inputs it comes with."""
+
+    place: int
+    text: str
+
+
+Message = Opened | Advanced | Printed | Remarked | Done
 Hear = Callable[[Message], None]
 """Takes the messages of all inputs, in the order in which they come about."""
 

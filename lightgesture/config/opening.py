@@ -1,6 +1,9 @@
 """From settings to a pipeline and to output folders, with what is wrong told as a UsageError."""
 
+from collections.abc import Callable
+from inspect import signature
 from pathlib import Path
+from typing import Final
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
@@ -11,26 +14,39 @@ from lightgesture.models import ModelError
 from lightgesture.pipeline import Pipeline
 from lightgesture.results import DebugPictures
 
+PIPELINE_OPTIONS: Final = tuple(
+    name for name in signature(Pipeline).parameters if name in DecodeSettings.model_fields
+)
+"""Options that are keywords of `Pipeline` too, under the same names."""
+
+
+def open_stream(
+    settings: DecodeSettings, source: str | None, debug: DebugPictures | None, remark: Callable[[str], None]
+) -> Pipeline:
+    """As `open_pipeline`, for frames that follow each other: their signs become words.
+
+    remark: is told of signs that the grammar does not know. UsageError: also where it has tokens that are never read.
+    """
+    pipeline = open_pipeline(settings, source, debug)
+    try:
+        warning = pipeline.check_language()
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if warning is not None:
+        remark(warning)
+    return pipeline
+
 
 def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPictures | None) -> Pipeline:
     """The pipeline for one input, `source` being its name in the records.
 
-    UsageError: the model, the selector's data, the colour profile or the grammar is wrong.
+    UsageError: the model, the selector's data, the colour profile or the grammar is wrong, or options exclude each
+    other.
     """
     try:
-        return Pipeline(
-            model=settings.model,
-            selector=settings.selector,
-            profile=settings.profile,
-            hold=settings.hold,
-            hold_seconds=settings.hold_seconds,
-            grammar=settings.grammar,
-            mirrored=settings.mirrored,
-            source=source,
-            frames=settings.frames,
-            debug=debug,
-        )
-    except (ModelError, SelectorError, ProfileError, GrammarError) as error:
+        options = {name: getattr(settings, name) for name in PIPELINE_OPTIONS}
+        return Pipeline(**options, source=source, debug=debug)
+    except (ModelError, SelectorError, ProfileError, GrammarError, ValueError) as error:
         raise UsageError(str(error)) from error
 
 

@@ -1,11 +1,14 @@
 """Every option of the decoding commands with its range and its effect, as one model."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
 from lightgesture.config import DEFAULT_FPS
+
+if TYPE_CHECKING:
+    from lightgesture.sources import SourceOptions
 
 MAX_HOLD = 1000
 """Longest hold, frames: 16 s at 60 frames a second."""
@@ -15,6 +18,9 @@ MAX_JOBS = 1024
 
 MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 """Shortest and longest hold, seconds."""
+
+MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
+"""Least and greatest caution, as a grammar file may ask for."""
 
 MAX_GIVE_UP_S = 86_400.0
 """Longest wait for a picture after which `live` gives up, seconds: a day."""
@@ -41,10 +47,15 @@ def _option(
     *,
     only: tuple[str, ...] = DECODING,
     kind: Literal["path", ""] = "",
+    changes_results: bool = True,
     **checks: Any,
 ) -> Any:
-    """A field that is an option too; `only`: the commands that have it. kind: "path" of a file or a folder."""
-    extra: Any = {"metavar": metavar, "only": only, "kind": kind}
+    """A field that is an option too.
+
+    only: the commands that have it. kind: "path" of a file or a folder. changes_results: whether what `decode` writes
+    into its folder of results depends on it.
+    """
+    extra: Any = {"metavar": metavar, "only": only, "kind": kind, "changes_results": changes_results}
     return Field(default=default, description=text, json_schema_extra=extra, **checks)
 
 
@@ -69,6 +80,13 @@ class DecodeSettings(BaseModel):
     grammar: str | None = _option(
         None, "grammar file (default: the bundled one)", "FILE", kind="path", only=STREAMS
     )
+    rule: Literal["frames", "seconds", "evidence", "sentence"] | None = _option(
+        None,
+        "when signs count: each by itself, after a hold in frames or seconds or by evidence, or by the whole sentence"
+        " (default: the grammar's own)",
+        "frames|seconds|evidence|sentence",
+        only=STREAMS,
+    )
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
@@ -86,6 +104,24 @@ class DecodeSettings(BaseModel):
         le=MAX_HOLD_S,
         allow_inf_nan=False,
     )
+    caution: float | None = _option(
+        None,
+        "how sure a sentence must be to be issued, by the rule sentence: less issues more, and more that is wrong"
+        " (default: the grammar's own, else 1)",
+        "C",
+        only=STREAMS,
+        ge=MIN_CAUTION,
+        le=MAX_CAUTION,
+        allow_inf_nan=False,
+    )
+    threshold: float | None = _option(
+        None,
+        "least probability of a token, 0 to 1 (default: 0.7)",
+        "P",
+        ge=0,
+        le=1,
+        allow_inf_nan=False,
+    )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
     fps: float = _option(
         DEFAULT_FPS,
@@ -96,7 +132,9 @@ class DecodeSettings(BaseModel):
         le=MAX_FPS,
         allow_inf_nan=False,
     )
-    as_json: bool = _option(False, "records on standard output, one JSON object a line", alias="json")
+    as_json: bool = _option(
+        False, "records on standard output, one JSON object a line", alias="json", changes_results=False
+    )
     frames: bool = _option(False, "a record for every frame too", only=STREAMS)
     out: str | None = _option(
         None,
@@ -104,6 +142,7 @@ class DecodeSettings(BaseModel):
         "DIR",
         kind="path",
         only=(DECODE,),
+        changes_results=False,
         min_length=1,
     )
     annotate: bool = _option(
@@ -119,6 +158,7 @@ class DecodeSettings(BaseModel):
         "videos decoded at once, each by a process of its own (default: the cores)",
         "N",
         only=(DECODE,),
+        changes_results=False,
         ge=1,
         le=MAX_JOBS,
     )
@@ -127,6 +167,7 @@ class DecodeSettings(BaseModel):
         "decode on the workers of the Dask scheduler at this address",
         "ADDRESS",
         only=(DECODE,),
+        changes_results=False,
         min_length=1,
     )
     size: str | None = _option(
@@ -140,7 +181,10 @@ class DecodeSettings(BaseModel):
         None, "image topic of a bag (default: the only one)", "NAME", only=(DECODE, CALIBRATE), min_length=1
     )
     insecure: bool = _option(
-        False, "take a camera's own certificate for https, which nobody vouches for", only=(LIVE, CALIBRATE)
+        False,
+        "take a camera's own certificate for https, which nobody vouches for",
+        only=(LIVE, CALIBRATE),
+        changes_results=False,
     )
     give_up: float | None = _option(
         None,
@@ -150,8 +194,11 @@ class DecodeSettings(BaseModel):
         gt=0,
         le=MAX_GIVE_UP_S,
         allow_inf_nan=False,
+        changes_results=False,
     )
-    recursive: bool = _option(False, "videos in the folders of a folder too", only=(DECODE,))
+    recursive: bool = _option(
+        False, "videos in the folders of a folder too", only=(DECODE,), changes_results=False
+    )
     join: bool = _option(
         False,
         "the chapters of one recording (GX010001, GX020001; DJI_0001, DJI_0002) are one input, with one time",
@@ -201,7 +248,14 @@ class DecodeSettings(BaseModel):
         kind="path",
         min_length=1,
     )
-    quiet: bool = _option(False, "no progress and no remarks on standard error")
+    quiet: bool = _option(False, "no progress and no remarks on standard error", changes_results=False)
+
+    @property
+    def source_options(self) -> "SourceOptions":
+        """What the user says about the source of pictures."""
+        from lightgesture.sources import SourceOptions
+
+        return SourceOptions(self.fps, self.width_height, self.topic, self.insecure)
 
     @property
     def width_height(self) -> tuple[int, int] | None:
@@ -212,12 +266,21 @@ class DecodeSettings(BaseModel):
         return int(width), int(height)
 
 
-PATH_OPTIONS = tuple(
-    name
-    for name, field in DecodeSettings.model_fields.items()
-    if isinstance(field.json_schema_extra, dict) and field.json_schema_extra["kind"] == "path"
-)
+def _fields_with(key: str, value: object) -> tuple[str, ...]:
+    """Fields whose options say this of themselves."""
+    fields = DecodeSettings.model_fields.items()
+    return tuple(
+        name
+        for name, field in fields
+        if isinstance(field.json_schema_extra, dict) and field.json_schema_extra[key] == value
+    )
+
+
+PATH_OPTIONS = _fields_with("kind", "path")
 """Fields that name files and folders."""
+
+NO_INFLUENCE = _fields_with("changes_results", False)
+"""Fields that change no file of results; any other makes these anew."""
 
 
 def change_paths(values: Mapping[str, Any], change: Callable[[str], str]) -> dict[str, str]:

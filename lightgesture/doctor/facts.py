@@ -11,9 +11,9 @@ PACKAGE = "lightgesture"
 LIBRARIES = (
     "numpy",
     "opencv-python-headless",
+    "av",
     "ai-edge-litert",
     "pydantic",
-    "scikit-learn",
     "threadpoolctl",
     "tqdm",
 )

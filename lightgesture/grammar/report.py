@@ -6,8 +6,22 @@ from dataclasses import asdict
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Decoder, Event, Grammar, Signs, inspect_grammar
 from lightgesture.fsm.language.forms import is_digit, split_carrier
+from lightgesture.fsm.language.load import BUNDLED
 
 Path = str | None
+
+
+def init(path: str) -> str:
+    """Write the bundled grammar to a new file; what was done, in a line. UsageError: it is there, or cannot be
+    written."""
+    try:
+        with open(path, "x", encoding="utf-8") as stream:
+            stream.write(BUNDLED.read_text(encoding="utf-8"))
+    except FileExistsError:
+        raise UsageError(f"{path}: is there already; name a new file") from None
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written ({error.strerror}); name another place") from None
+    return f"{path}: written; edit it, then run: lightgesture grammar check {path}"
 
 
 def check(path: Path) -> tuple[list[str], bool]:
@@ -41,6 +55,7 @@ def show(grammar: Grammar) -> list[str]:
         details = [f"{key} {value}" for key, value in asdict(parameter).items() if value is not None]
         lines.append(f"  {number}  {', '.join([parameter.name, *details[1:]])}")
     settings = {**asdict(grammar.limits), **asdict(grammar.dwell), **asdict(grammar.control)}
+    settings |= {f"sentence {name}": value for name, value in asdict(grammar.sentence).items()}
     settings["confirm"] = ", ".join(sorted(grammar.control.confirm)) or None
     lines += [
         "",
@@ -68,7 +83,7 @@ def explain(grammar: Grammar, sequence: str) -> list[str]:
     lines = []
     for number, (left, right) in enumerate(pairs, start=1):
         events = decoder.step(Signs.of_tokens(left, right), 0.0) + decoder.step(Signs(), 0.0)
-        lines.append(f"{number}. {left},{right}: {'; '.join(_tell(events)) or 'nothing'}")
+        lines.append(f"{number}. {left},{right}: {'; '.join(tell(events)) or 'nothing'}")
         lines.append(f"   {decoder.sentence or decoder.state}; expected: {decoder.expected}")
     return lines
 
@@ -135,7 +150,8 @@ def _read_pair(grammar: Grammar, text: str) -> tuple[str, str]:
     return left, right
 
 
-def _tell(events: Sequence[Event]) -> Iterator[str]:
+def tell(events: Sequence[Event]) -> Iterator[str]:
+    """Events in words, those for displays left out."""
     for event in events:
         if event.type == "word":
             yield event.word

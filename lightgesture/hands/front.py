@@ -7,7 +7,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 
 from lightgesture.features.colour import ColourMap, ColourStage
-from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.find.selector import choose, load_selector
 from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import mirror_box
 from lightgesture.features.image import as_bgr8
@@ -23,7 +23,7 @@ from lightgesture.records import Hand
 
 
 class Finder(Protocol):
-    """Finds regions that may be hands; `features.find.selector.RegionStage` is the product's own."""
+    """Finds regions that may be hands; `features.find.selector.load_selector` gives the product's own."""
 
     settings: SelectorSettings
 
@@ -32,7 +32,7 @@ class Finder(Protocol):
         ...
 
     def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
-        """Look at predicted boxes alone, source pixels; None where it cannot but search."""
+        """Look at predicted boxes alone, one or more, source pixels; None where it cannot but search."""
         ...
 
 
@@ -57,7 +57,8 @@ class HandReader(FrontEnd):
     ) -> None:
         super().__init__()
         self._read = read
-        self._find: Finder = find or RegionStage()
+        self.tokens = read.classes
+        self._find: Finder = find or load_selector()
         self._colour = colour or ColourStage()
         self._make_track = track or (lambda: Tracker(selection=self._find.settings))
         self._make_memory = memory
@@ -129,7 +130,8 @@ class HandReader(FrontEnd):
     def _search(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
         """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
         what it should."""
-        followed = self._find.follow(colour, self._track.predict(time_s))
+        predicted = self._track.predict(time_s)
+        followed = self._find.follow(colour, predicted) if predicted else None
         if followed is not None and self._track.explains(followed):
             return followed, False
         return self._find.process(colour), True

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,11 @@ from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
 from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
 
+Extents = Literal["clearest", "mean"]
+"""What stands for a hand that may have several extents: the one in which some token is likeliest, which is the
+sharpest and can be sharply wrong where a box cuts off a finger, or the mean of all of them, which is in doubt where
+they differ."""
+
 
 @dataclass(frozen=True, slots=True)
 class ReadingSettings:
@@ -19,6 +24,7 @@ class ReadingSettings:
 
     token_probability: least calibrated probability of the best token, 0 to 1. Higher refuses more and reads fewer
         wrong; what stays below is `low_confidence`.
+    extents: how the extents that a hand may have are read together, see `Extents`.
     edge_share: share of a box's side within which the picture's edge cuts the hand, which is then `partial` if the
         classifier is not sure.
     covered_share: share of a hand's box that another hand's covers, from which it counts as crowded, 0 to 1.
@@ -28,6 +34,7 @@ class ReadingSettings:
     """
 
     token_probability: float = 0.7
+    extents: Extents = "clearest"
     edge_share: float = 0.02
     covered_share: float = 0.25
     edge_factor: float = 0.72
@@ -98,8 +105,8 @@ def read_token(
     """Token, confidence and reason of one hand from its row of probabilities (classes,).
 
     The token is None where `none` is most likely ("unknown_shape") or no token likely enough
-    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge and
-    before others the confidence of what is read is lowered, and must still suffice.
+    ("partial" at the picture's edge, "occluded" before a face or another hand, else "low_confidence"). At the edge
+    and before others the confidence of what is read is lowered, and must still suffice.
     """
     best = int(np.argmax(probabilities))
     confidence = float(probabilities[best])
@@ -127,6 +134,11 @@ class ReadingStage:
         self._classifier = classifier
         self._settings = settings or ReadingSettings()
 
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """What the classifier tells apart."""
+        return tuple(self._classifier.classes)
+
     def process(
         self,
         image: Image,
@@ -137,8 +149,8 @@ class ReadingStage:
     ) -> tuple[Hand, ...]:
         """Read every hand that is seen in one BGR frame, in the order of `hands`.
 
-        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame at
-        `time_s` seconds this is; None for a picture on its own.
+        face: middle of the diver's face, source pixels, None where none is seen. memory: of the stream, whose frame
+        at `time_s` seconds this is; None for a picture on its own.
         """
         memory = memory or NO_MEMORY
         memory.keep_only([hand.number for hand in hands])
@@ -167,10 +179,11 @@ class ReadingStage:
         memory: ReadingMemory,
         time_s: float,
     ) -> Hand:
-        """The hand in the extent in which it reads most clearly."""
+        """The hand with the box in which it reads most clearly."""
         classes = self._classifier.classes
         place = clearest(rows, classes)
-        steady = memory.steady(hand.number, rows[place], time_s)
+        row = rows[place] if self._settings.extents == "clearest" else rows.mean(axis=0)
+        steady = memory.steady(hand.number, row, time_s)
         box = boxes[place]
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
         token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)

@@ -3,6 +3,8 @@
 import threading
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import datetime
 from statistics import median
 from typing import Final, Protocol
 
@@ -13,9 +15,10 @@ from lightgesture.errors import InputError
 from lightgesture.fsm import State
 from lightgesture.live.reader import Mailbox, Report, Snapshot
 from lightgesture.pipeline import Pipeline
-from lightgesture.records import FrameRecord, HeartbeatRecord, Record
+from lightgesture.records import FrameRecord, HeartbeatRecord, Record, SummaryRecord, utc_text
 from lightgesture.results import DebugPictures
 from lightgesture.sources import to_image
+from lightgesture.watch import Watch
 
 HEARTBEAT_S: Final = 1.0
 """Seconds from one heartbeat record to the next."""
@@ -58,7 +61,7 @@ class LiveLoop:
 
     source: the name in the heartbeats. pipeline: must give frame records, which listeners need. frames: whether they
     go to the outlets too. clock: seconds since the start, the same as that of the reader. report: takes messages.
-    heartbeat_s: seconds from one heartbeat record to the next.
+    heartbeat_s: seconds from one heartbeat record to the next. start_utc: the moment at which `clock` was 0.
     """
 
     def __init__(
@@ -74,11 +77,14 @@ class LiveLoop:
         frames: bool = False,
         debug: DebugPictures | None = None,
         heartbeat_s: float = HEARTBEAT_S,
+        start_utc: datetime | None = None,
     ) -> None:
         self._source, self._mailbox, self._pipeline, self._outlets = source, mailbox, pipeline, outlets
         self._clock, self._report, self._listeners = clock, report, listeners
         self._frames, self._debug, self._heartbeat_s = frames, debug, heartbeat_s
         self._processed = self._unreadable = 0
+        self._watch = Watch()
+        self._start_utc = pipeline.start_utc = start_utc
         self._spent_ms: list[float] = []
         self._state = "idle"
         self._seen_s = clock()
@@ -102,12 +108,18 @@ class LiveLoop:
                 self._beat(now_s)
                 # After a stall one beat makes up for those that were missed.
                 beat_s = max(beat_s + self._heartbeat_s, now_s)
-        self._publish(None, self._pipeline.finish())
+        self._publish(None, self._finish())
 
     @property
     def processed(self) -> int:
         """Pictures that went through the pipeline."""
         return self._processed
+
+    def _finish(self) -> list[Record]:
+        records = self._pipeline.finish()
+        if self._watch.is_blank and isinstance(records[-1], SummaryRecord):
+            records[-1] = replace(records[-1], status="failed")
+        return records
 
     def _is_unheard(self) -> bool:
         return not self._listeners and bool(self._outlets) and all(outlet.is_gone for outlet in self._outlets)
@@ -125,7 +137,10 @@ class LiveLoop:
             return
         if self._debug is not None:
             self._debug.select(snapshot.time_s)
-        records = self._pipeline.process(image, snapshot.time_s, snapshot.index)
+        records: list[Record] = []
+        if (hole := self._watch.look(image, snapshot.time_s)) is not None:
+            records += self._pipeline.interrupt(hole, snapshot.time_s, snapshot.index)
+        records += self._pipeline.process(image, snapshot.time_s, snapshot.index)
         self._spent_ms.append((time.perf_counter() - start) * 1e3)
         self._processed += 1
         self._seen_s, self._is_silent = snapshot.time_s, False
@@ -137,6 +152,7 @@ class LiveLoop:
         beat = HeartbeatRecord(
             source=self._source,
             time_s=round(now_s, 3),
+            utc=utc_text(self._start_utc, now_s),
             frames=self._processed,
             dropped=self._mailbox.dropped,
             ms_per_frame=spent_ms,

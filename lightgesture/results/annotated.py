@@ -88,7 +88,7 @@ class AnnotatedVideo:
 
 @contextmanager
 def open_annotated_video(path: Path, originals: Sequence[str] = ()) -> Iterator[AnnotatedVideo]:
-    """Write an `.mp4` file that appears under its name when the block ends well. Needs the extra `av`.
+    """Write an `.mp4` file that appears under its name when the block ends well.
 
     originals: paths of the video, or of its chapters, whose sound and metadata it gets, where it has any.
     """

@@ -15,6 +15,7 @@ COLUMNS: tuple[str, ...] = (
     "source",
     "frame",
     "time_s",
+    "utc",
     "start_frame",
     "start_time_s",
     "text",

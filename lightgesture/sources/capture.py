@@ -1,4 +1,4 @@
-"""Cameras, RTSP and other network streams, and GStreamer pipelines, read by OpenCV."""
+"""Cameras and GStreamer pipelines, read by OpenCV."""
 
 import os
 import re
@@ -12,12 +12,9 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import types
-from lightgesture.sources.address import hide_login, split_address
+from lightgesture.sources.address import hide_login
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.types import LiveSource, SourceOptions
-
-NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
-"""Beginnings of the addresses that FFmpeg opens."""
 
 _VIDEO_DEVICE = re.compile(r"/dev/video(\d+)")
 
@@ -84,11 +81,6 @@ def open_camera(name: str, options: SourceOptions) -> CaptureStream:
         width, height = options.size
         wishes |= {cv2.CAP_PROP_FRAME_WIDTH: width, cv2.CAP_PROP_FRAME_HEIGHT: height}
     return CaptureStream(name, target, cv2.CAP_ANY, wishes=wishes)
-
-
-def open_network(address: str) -> CaptureStream:
-    """A stream that FFmpeg reads, such as RTSP or H.264 over UDP, not yet opened."""
-    return CaptureStream(split_address(address).name, address, cv2.CAP_FFMPEG, _timeouts())
 
 
 def open_gstreamer(line: str) -> CaptureStream:

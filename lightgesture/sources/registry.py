@@ -6,13 +6,13 @@ import stat
 import sys
 from collections.abc import Callable, Iterable
 
-from lightgesture.config import DEFAULT_FPS
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.address import hide_login
 from lightgesture.sources.bag import BagFile, is_bag
-from lightgesture.sources.capture import NETWORK_SCHEMES, open_camera, open_gstreamer, open_network
+from lightgesture.sources.capture import open_camera, open_gstreamer
 from lightgesture.sources.contents import look_into
 from lightgesture.sources.folder import FrameFolder, natural_key
+from lightgesture.sources.network import NETWORK_SCHEMES, NetworkStream
 from lightgesture.sources.rtp import RtpStream, read_description
 from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, StandardInputStream
 from lightgesture.sources.stream_frames import StreamFrames
@@ -46,7 +46,7 @@ SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
     "bag": lambda path, options: BagFile(path, options.topic),
     "folder": _open_folder,
     "standard input": lambda _, options: StandardInput(options),
-    "video": lambda path, _: VideoFile(path),
+    "video": lambda path, options: VideoFile(path, options.fps),
 }
 """Kind of input to what opens it, given its name and what the user says about it."""
 
@@ -55,7 +55,7 @@ LIVE_SOURCES: dict[str, Callable[[str, SourceOptions], LiveSource]] = {
     "gstreamer": lambda line, _: open_gstreamer(line),
     "http": _http_stream,
     "description": lambda path, _: read_description(path),
-    "network": lambda address, _: open_network(address),
+    "network": lambda address, _: NetworkStream(address),
     "rtp": lambda address, _: RtpStream(address),
     "standard input": lambda _, options: StandardInputStream(options),
 }
@@ -78,21 +78,13 @@ def expand_inputs(inputs: Iterable[str]) -> list[str]:
     return list(found.values())
 
 
-def open_source(
-    path: str | os.PathLike[str],
-    fps: float = DEFAULT_FPS,
-    *,
-    size: tuple[int, int] | None = None,
-    topic: str | None = None,
-) -> Source:
+def open_source(path: str | os.PathLike[str], options: SourceOptions | None = None) -> Source:
     """Open a video, a folder of frames, a bag, or standard input (`-`); use it in a `with` block, iterate it once.
 
-    fps: frames a second of a folder or of standard input, above 0; others have their own time stamps. size: width and
-    height of raw pictures on standard input. topic: the image topic of a bag. InputError: one line that says what is
-    wrong with this input.
+    InputError: one line that says what is wrong with this input.
     """
     name = os.fspath(path)
-    return SOURCES[_kind(name)](name, SourceOptions(fps, size, topic))
+    return SOURCES[_kind(name)](name, options or SourceOptions())
 
 
 def live_source(name: str, options: SourceOptions) -> LiveSource:
@@ -118,7 +110,7 @@ def open_any(name: str, options: SourceOptions) -> Source:
     is_file = os.path.isfile(name) and not name.lower().endswith(DESCRIPTION_SUFFIX)
     is_recording = name == STANDARD_INPUT or is_file or os.path.isdir(name)
     if is_recording or (_stream_kind(name) is None and "://" not in name):
-        return open_source(name, options.fps, size=options.size, topic=options.topic)
+        return open_source(name, options)
     return StreamFrames(live_source(name, options))
 
 
@@ -133,6 +125,10 @@ def _kind(name: str) -> str:
         if name.lower().endswith(DESCRIPTION_SUFFIX):
             raise InputError(f"{name}: describes a stream; decode it with `lightgesture live`")
         return "video"
+    if _is_pipe(name):
+        raise InputError(
+            f"{name}: is a pipe; send pictures to standard input, as `lightgesture decode - < {name}`"
+        )
     if os.path.lexists(name):
         raise InputError(f"{name}: is neither a file nor a folder; name a video or a folder of frames")
     if "://" in name:
@@ -173,7 +169,16 @@ def _stream_kind(name: str) -> str | None:
 
 
 def _is_device(name: str) -> bool:
+    return stat.S_ISCHR(_mode(name))
+
+
+def _is_pipe(name: str) -> bool:
+    return stat.S_ISFIFO(_mode(name))
+
+
+def _mode(name: str) -> int:
+    """Kind of file; 0 where there is none."""
     try:
-        return stat.S_ISCHR(os.stat(name).st_mode)
+        return os.stat(name).st_mode
     except (OSError, ValueError):
-        return False
+        return 0

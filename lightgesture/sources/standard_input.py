@@ -3,7 +3,7 @@
 import io
 import sys
 from collections.abc import Iterator
-from typing import IO
+from typing import IO, Final
 
 import numpy as np
 
@@ -16,17 +16,22 @@ from lightgesture.sources.types import CHUNK_BYTES, Content, LiveSource, Source,
 STANDARD_INPUT = "-"
 """What the user writes for it."""
 
+HEADER_BYTES: Final = 4096
+"""Bytes between two pictures that are taken for the headers of a multipart stream; more is a hole."""
+
 
 class StandardInputStream(LiveSource):
     """The pictures of standard input as they come, still encoded if they are JPEG files.
 
     With `options.size` the bytes are raw pictures, blue, green, red, without anything between them.
-    `stream`: another stream of bytes in its place. InputError at the end: not one picture came.
+    `stream`: another stream of bytes in its place. passed_over: bytes before the last picture that belong to none.
+    InputError at the end: not one picture came.
     """
 
     def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
         self.is_reopened = False
+        self.passed_over = 0
         self._size = options.size
         self._stream = stream or _open_raw()
 
@@ -48,7 +53,8 @@ class StandardInputStream(LiveSource):
     def _jpegs(self) -> Iterator[bytes]:
         splitter = JpegSplitter()
         for chunk in self._chunks():
-            yield from splitter.feed(chunk)
+            for picture, self.passed_over in zip(splitter.feed(chunk), splitter.passed_over, strict=True):
+                yield picture
 
     def _raws(self, width: int, height: int) -> Iterator[Content]:
         length = width * height * 3
@@ -73,7 +79,10 @@ def _open_raw() -> IO[bytes]:
 
 
 class StandardInput(Source):
-    """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own."""
+    """All pictures of standard input as frames, in time steps of 1 / `options.fps`, for it has no clock of its own.
+
+    A frame after bytes that are no picture, more than the headers of a multipart stream are, says so (`gap`).
+    """
 
     def __init__(self, options: SourceOptions, stream: IO[bytes] | None = None) -> None:
         self.name = STANDARD_INPUT
@@ -88,6 +97,8 @@ class StandardInput(Source):
             except InputError as error:
                 left_out.append(f"picture {index} {error}")
             else:
-                yield Frame(image, index, round(index / self._fps, 6))
+                foreign = self._stream.passed_over
+                gap = f"{foreign} bytes are no picture" if index and foreign > HEADER_BYTES else None
+                yield Frame(image, index, round(index / self._fps, 6), gap)
         if left_out:
             raise InputError(f"standard input: {len(left_out)} pictures left out; the first: {left_out[0]}")

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Final, Self
 
 import numpy as np
@@ -20,7 +21,7 @@ class SourceOptions:
     """What the user may say about a source; each is used by some sources only."""
 
     fps: float = DEFAULT_FPS
-    """Frames a second of a folder and of standard input, above 0."""
+    """Frames a second, above 0, of what has no clock: a folder, standard input, a bare stream of H.264 or JPEG."""
     size: tuple[int, int] | None = None
     """Width and height in pixels: of raw standard input, which is taken for JPEG pictures without it; asked of a
     camera, which may give another."""
@@ -65,6 +66,9 @@ class Source(_Opened, ABC):
 
     frame_count: int | None = None
     """How many frames it promises, None where it does not say."""
+
+    start_utc: datetime | None = None
+    """The moment at which `time_s` is 0, None where no absolute clock tells."""
 
     @abstractmethod
     def __iter__(self) -> Iterator[Frame]: ...

@@ -31,6 +31,7 @@ class FakePipeline:
 
     made: ClassVar = []
     interrupt_at = None
+    unknown = False
 
     def __init__(self, *, model, source, frames, debug, **options):
         if model == "broken.npz":
@@ -42,6 +43,12 @@ class FakePipeline:
 
     def for_stream(self, source, debug=None):
         return FakePipeline(source=source, frames=self.frames, debug=debug, **self.options)
+
+    def check_language(self):
+        return "classes of the model that the grammar does not know: shaka" if self.unknown else None
+
+    def interrupt(self, detail, time_s, index=None):
+        return [Notice(reason="gap", detail=detail, source=self.source, frame=index, time_s=time_s)]
 
     def process(self, image_bgr, time_s, index=None):
         assert image_bgr.dtype == np.uint8

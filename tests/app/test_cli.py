@@ -71,6 +71,7 @@ def test_wrong_usage_is_one_line(run, arguments, message):
         (["evaluate"], "lightgesture.benchmarks", "train"),
         (["synth", "--seed", "1"], "lightgesture.synth", "train"),
         (["doctor"], "torch", "train"),
+        (["train", "--help"], "sklearn", "train"),
     ],
 )
 def test_a_command_that_lacks_a_package_names_the_extra_that_brings_it(

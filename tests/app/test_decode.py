@@ -63,8 +63,11 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "model": "cnn",
         "selector": "learned",
         "profile": None,
+        "rule": None,
         "hold": 3,
         "hold_seconds": None,
+        "caution": None,
+        "threshold": None,
         "grammar": "my.toml",
         "mirrored": True,
     }
@@ -76,8 +79,11 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "model": "cnn",
         "selector": "learned",
         "profile": None,
+        "rule": None,
         "hold": None,
         "hold_seconds": None,
+        "caution": None,
+        "threshold": None,
         "grammar": None,
         "mirrored": False,
     }
@@ -250,3 +256,31 @@ def test_globs_in_natural_order(run, make_video, tmp_path):
     result = run("decode", tmp_path / "dive*.avi", tmp_path / "dive9.avi", "--json")
     sources = [record["source"] for record in records(result.out) if record["type"] == "summary"]
     assert sources == [str(tmp_path / "dive9.avi"), str(tmp_path / "dive10.avi")]
+
+
+def test_a_remark_of_all_inputs_is_told_once(run, make_video, monkeypatch, fake):
+    monkeypatch.setattr(fake, "unknown", True)
+    videos = [make_video(name) for name in ("a.avi", "b.avi")]
+    result = run("decode", *videos)
+    assert [line for line in result.err if "does not know: shaka" in line] == [
+        "lightgesture: classes of the model that the grammar does not know: shaka"
+    ]
+    assert not [line for line in run("decode", *videos, "--quiet").err if "shaka" in line]
+
+
+def test_a_stage_that_raises_fails_its_input_in_one_line(run, make_video, monkeypatch, fake, tmp_path):
+    process = fake.process
+
+    def raise_once(self, image, time_s, index=None):
+        if self.source.endswith("a.avi") and index == 1:
+            raise ZeroDivisionError("of a stage")
+        return process(self, image, time_s, index)
+
+    monkeypatch.setattr(fake, "process", raise_once)
+    videos = [make_video(name) for name in ("a.avi", "b.avi")]
+    result = run("decode", *videos, "--out", tmp_path / "out")
+    assert result.status == ExitStatus.SOME_FAILED
+    (line,) = [line for line in result.err if "a.avi: " in line]
+    assert "broke off at a defect (ZeroDivisionError: of a stage; test_decode.py, line " in line
+    assert sorted(path.stem for path in (tmp_path / "out").glob("*.jsonl")) == ["b"]
+    assert not list((tmp_path / "out").glob("*a*"))

@@ -221,7 +221,7 @@ def test_the_words_of_the_sequences_lead_through_the_table(read):
 
 
 def test_constants_come_with_what_they_do(read):
-    peaks = read("constants.json")["features.find.peaks"]
+    peaks = read("constants.json")["features.find.locator"]
     assert peaks["STRIDE"] == {"value": 4, "about": "Working pixels for one cell of the maps."}
 
 

@@ -15,7 +15,7 @@ from lightgesture.fsm import Decoder, Sign, Signs, load_grammar
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.pictures import draw_regions
 from lightgesture.hands.reading import clearest, is_crowded, read_token
-from lightgesture.models import load_classifier
+from lightgesture.models import ModelError, load_classifier
 from lightgesture.records import FrameRecord, SummaryRecord
 from lightgesture.sources import open_source
 
@@ -50,6 +50,7 @@ def test_a_stream_of_nothing_gives_frame_records_and_a_summary():
             "source": "black",
             "frame": index,
             "time_s": index / 30,
+            "utc": None,
             "hands": [],
         }
     (summary,) = pipeline.finish()
@@ -316,6 +317,16 @@ def test_a_decoder_may_be_given():
     decoder = Decoder(load_grammar(), hold=2, source="mine")
     records = decode([Signs.of_tokens("0", "0")] * 5, decoder=decoder)
     assert [(frame, record.source) for frame, record in records if record.type == "word"] == [(1, "mine")]
+
+
+def test_signs_that_the_model_cannot_read_are_refused_and_others_are_told_of():
+    front = Recording([])
+    assert Pipeline(front).check_language() is None
+    front.tokens = ("0", "5", "none")
+    with pytest.raises(ModelError, match="tokens of the grammar that the model cannot read: 1, 2, "):
+        Pipeline(front).check_language()
+    front.tokens = (*load_grammar().tokens, "shaka")
+    assert "does not know: shaka" in Pipeline(front).check_language()
 
 
 @pytest.mark.parametrize("option", [{"model": "svm"}, {"mirrored": True}, {"selector": "classical"}])

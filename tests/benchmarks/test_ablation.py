@@ -29,7 +29,7 @@ from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.classical import ClassicalSelector
 from lightgesture.features.find.learned import Places
 from lightgesture.features.find.proposals import propose
-from lightgesture.features.find.selector import RegionStage
+from lightgesture.features.find.selector import load_selector
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.features.find.settings import CLASSICAL
 from lightgesture.features.types import Candidates, HandRegion
@@ -141,12 +141,12 @@ def test_each_net_alone_has_its_own_boxes(diver):
 
 
 def test_a_changed_stage_changes_what_is_followed_too(diver):
-    predicted = [region.box for region in RegionStage("learned").process(diver).regions[:2]]
+    predicted = [region.box for region in load_selector("learned").process(diver).regions[:2]]
 
     def forget(found):
         return replace(found, regions=found.regions[:1], pairs=found.pairs[:1, :1])
 
-    own = RegionStage("learned").follow(diver, predicted)
+    own = load_selector("learned").follow(diver, predicted)
     assert own is not None
     changed = ChangedStage("learned", change=forget)
     assert len(changed.follow(diver, predicted).regions) == min(len(own.regions), 1)

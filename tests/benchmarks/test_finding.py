@@ -19,14 +19,13 @@ from lightgesture.benchmarks.finding.pipelines import (
 from lightgesture.benchmarks.finding.regions import Run, make_answer, run_methods, run_single
 from lightgesture.benchmarks.finding.tables import finding_tables, found_table
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.features.find.selector import RegionStage
 from lightgesture.features.find.selector_file import (
     BUNDLED,
-    Selector,
     SelectorError,
     load_classical,
     load_learned,
 )
+from lightgesture.features.find.settings import LEARNED
 from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.hands import ReadingStage
@@ -63,13 +62,17 @@ def test_the_first_extent_is_kept_and_nothing_is_read():
 def test_other_stages_take_the_place_of_the_products(scene):
     made = []
 
-    class Refusing(RegionStage):
+    class Refusing:
+        settings = LEARNED
+
         def __init__(self):
-            super().__init__()
             made.append(self)
 
         def process(self, *arguments, **options):
             return Candidates((), np.zeros((0, 0), np.float32), (640, 480))
+
+        def follow(self, *arguments):
+            return None
 
     assert len(selector_method("classical").read(scene)) == 2
     method = variant("refuses everything", Stages(regions=Refusing))
@@ -167,7 +170,7 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     file = tmp_path / "fold.npz"
     parts = load_learned()
     own = replace(parts, **{name: altered(getattr(parts, name)) for name in ("places", "pairs")})
-    write_selector(Selector(load_classical(), own), file)
+    write_selector(load_classical(), own, file)
     card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")

@@ -9,15 +9,13 @@ from hypothesis import strategies as st
 from lightgesture.features.find.bank import (
     OTHER,
     DescriptorSettings,
-    bank_arrays,
     bank_distances,
     bank_from,
-    build_bank,
     describe_outlines,
     hand_proximity,
-    k_means,
-    mirrored,
 )
+from lightgesture.training.model_files import bank_arrays
+from lightgesture.training.regions.bank import build_bank, k_means, mirrored
 
 SETTINGS = DescriptorSettings()
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lightgesture.features.patch import PatchSettings, as_bgr, cut_patch, cut_patches
+from lightgesture.features.patch import PatchSettings, cut_patch, cut_patches
 
 SMALL = PatchSettings(size=24, context=1.0)
 
@@ -80,14 +80,14 @@ def test_grey_pictures_are_read_as_equal_channels() -> None:
     [
         (np.zeros((20, 20, 3), np.uint16), "8 bit"),
         (np.zeros((20, 20, 3), np.float32), "8 bit"),
-        (np.zeros((20, 20, 4), np.uint8), "shape"),
+        (np.zeros((20, 20, 5), np.uint8), "shape"),
         (np.zeros((0, 20, 3), np.uint8), "shape"),
         (np.zeros((20,), np.uint8), "shape"),
     ],
 )
 def test_other_pictures_are_refused(picture: np.ndarray, words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        as_bgr(picture)
+        cut_patch(picture, (0, 0, 9, 9), "left")
 
 
 def test_an_unknown_side_is_refused() -> None:

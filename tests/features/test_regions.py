@@ -10,7 +10,7 @@ from lightgesture.features import find_hands
 from lightgesture.features.colour import ColourStage, reduce_picture
 from lightgesture.features.find.cells import describe
 from lightgesture.features.find.proposals import cut_forearm, palm_circle, propose
-from lightgesture.features.find.selector import RegionStage, choose
+from lightgesture.features.find.selector import choose, load_selector
 from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Candidates, HandRegion
@@ -58,7 +58,7 @@ def test_ten_thousand_specks_take_bounded_time_and_are_no_hands():
     rng = np.random.default_rng(3)
     image = np.full((480, 640, 3), WATER, np.uint8)
     image[rng.integers(0, 480, 10_000), rng.integers(0, 640, 10_000)] = SKIN
-    stage = RegionStage()
+    stage = load_selector()
     colour = ColourStage().process(image)
     start = time.perf_counter()
     candidates = stage.process(colour)

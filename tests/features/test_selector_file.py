@@ -9,7 +9,6 @@ from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import (
     BUNDLED,
     FORMAT,
-    Selector,
     SelectorError,
     load_classical,
     load_learned,
@@ -38,16 +37,16 @@ def _assert_equal_trees(first, second):
 
 def test_a_selector_survives_its_file(tmp_path):
     file = tmp_path / "copy.npz"
-    bundled = Selector(load_classical(), load_learned())
-    write_selector(bundled, file)
+    bundled = load_classical(), load_learned()
+    write_selector(*bundled, file)
     classical, learned = load_classical(file), load_learned(file)
-    _assert_equal_trees(classical.regions, bundled.classical.regions)
-    _assert_equal_trees(classical.pairs, bundled.classical.pairs)
-    np.testing.assert_array_equal(classical.bank.centres, bundled.classical.bank.centres)
-    _assert_equal_trees(learned.places, bundled.learned.places)
-    _assert_equal_trees(learned.pairs, bundled.learned.pairs)
+    _assert_equal_trees(classical.regions, bundled[0].regions)
+    _assert_equal_trees(classical.pairs, bundled[0].pairs)
+    np.testing.assert_array_equal(classical.bank.centres, bundled[0].bank.centres)
+    _assert_equal_trees(learned.places, bundled[1].places)
+    _assert_equal_trees(learned.pairs, bundled[1].pairs)
     for name in ("locator", "refiner"):
-        mine, theirs = getattr(learned, name), getattr(bundled.learned, name)
+        mine, theirs = getattr(learned, name), getattr(bundled[1], name)
         assert (mine.nodes, mine.inputs, mine.outputs) == (theirs.nodes, theirs.inputs, theirs.outputs)
         for node in mine.weights:
             np.testing.assert_array_equal(mine.weights[node].weights, theirs.weights[node].weights)

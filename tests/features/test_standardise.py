@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.features.net.network import Quantisation, dequantise, quantise
+from lightgesture.features.net.network import Quantisation
+from lightgesture.features.net.runner import dequantise, quantise
 from lightgesture.features.standardise import LARGEST, channel_tables, luma_tables, patch_levels
 
 FINE = Quantisation(3.0 / 127.5, -1)

@@ -36,11 +36,11 @@ def test_a_side_gives_way_that_was_a_guess_or_rests_on_a_worse_pair_or_on_a_shor
 
 def test_a_lone_hand_takes_the_side_of_the_axis_else_of_the_middle(region):
     track = begin(1, 0, region(250, 140), 0.0)
-    guess = with_lone_side(track, None, 640, by_middle=0.8)
+    guess = with_lone_side(track, None, 640)
     assert (guess.side, guess.basis, guess.certainty) == ("right", "middle", 0.8)
-    assert with_lone_side(track, 200.0, 640, by_middle=0.8).side == "left"
-    assert with_lone_side(guess, 200.0, 640, by_middle=0.8).side == "left"
-    assert with_lone_side(guess, None, 100, by_middle=0.8) == guess
+    assert with_lone_side(track, 200.0, 640).side == "left"
+    assert with_lone_side(guess, 200.0, 640).side == "left"
+    assert with_lone_side(guess, None, 100) == guess
 
 
 @pytest.mark.parametrize("height_apart", [0, 60, 160])

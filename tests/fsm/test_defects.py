@@ -131,7 +131,7 @@ def test_sound_grammars_have_none(path):
         (
             "[menu]\n",
             '[dwell]\nrule = "time"\n[menu]\n',
-            "dwell.rule: should be 'frames', 'seconds' or 'evidence'",
+            "dwell.rule: should be 'frames', 'seconds', 'evidence' or 'sentence'",
         ),
         ("[menu]\n", "[dwell]\nunread = 0\n[menu]\n", "dwell.unread: should be greater than 0, not 0"),
         (

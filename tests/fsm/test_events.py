@@ -9,12 +9,12 @@ import pytest
 from lightgesture.fsm import Decoder, Instruction, Notice, Rejected, Signs, State, Word
 
 KEYS = {
-    "word": "type source frame time_s pair word state confidence",
-    "instruction": "type source frame time_s start_frame start_time_s text kind action duration_s program "
+    "word": "type source frame time_s utc pair word state confidence",
+    "instruction": "type source frame time_s utc start_frame start_time_s text kind action duration_s program "
     "parameter change confidence words",
-    "rejected": "type source frame time_s reason text detail",
-    "state": "type source frame time_s state sentence dwell",
-    "notice": "type source frame time_s reason detail",
+    "rejected": "type source frame time_s utc reason text detail",
+    "state": "type source frame time_s utc state sentence dwell",
+    "notice": "type source frame time_s utc reason detail",
 }
 
 
@@ -54,6 +54,7 @@ def test_instruction_record_in_full(events, pick):
         "source": "dive.mp4",
         "frame": 104,
         "time_s": 104 / 30,
+        "utc": None,
         "start_frame": 0,
         "start_time_s": 0.0,
         "text": "STOP HOVER 50 GO",
@@ -82,6 +83,7 @@ def test_word_tells_the_sentence_so_far_and_idle_after_the_end(events, pick):
         "source": "dive.mp4",
         "frame": 32,
         "time_s": 32 / 30,
+        "utc": None,
         "pair": ["5", "5"],
         "word": "HOVER",
         "state": "STOP HOVER",

@@ -12,7 +12,7 @@ from lightgesture.features.hog import HogSettings
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.vector import VectorSettings
-from lightgesture.models import TrainingSample
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import SvmSettings
 
 SMALL = VectorSettings(PatchSettings(size=24), HogSettings(rim=0, cell=6), ContourSettings(size=24))

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lightgesture.models import CLASSES, ModelError, check_classes, in_order, load_classifier
+from lightgesture.models import CLASSES, ModelError, check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT, SHIPPED, Classifier
+from lightgesture.training.samples import in_order
 
 Draw = Callable[[str, int], np.ndarray]
 LARGEST = {"cnn": 150_000, "svm": 2_000_000}

@@ -24,8 +24,9 @@ from lightgesture.features.net.network import (
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models import ModelError, load_classifier
+from lightgesture.models.archive import read_model
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnClassifier, CnnModel
-from lightgesture.models.cnn_file import read_cnn_model
+from lightgesture.models.cnn_file import cnn_model_from
 from lightgesture.training.model_files import write_cnn_model
 from lightgesture.training.nets.flatbuffer import with_litert
 
@@ -110,7 +111,7 @@ def test_a_cast_and_another_exposure_change_nothing_much(model: CnnModel) -> Non
 
 
 def test_a_written_model_reads_back_the_same(model: CnnModel, path: Path) -> None:
-    back = read_cnn_model(path)
+    back = cnn_model_from(path, *read_model(path))
     assert (back.classes, back.patch, back.contour) == (model.classes, model.patch, model.contour)
     assert (back.temperature, back.smallest_hand) == (model.temperature, model.smallest_hand)
     ours, theirs = (CnnClassifier(one, "numpy").scores(patches(5)) for one in (model, back))

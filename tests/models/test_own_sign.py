@@ -96,6 +96,8 @@ def test_the_documented_commands_lead_from_folders_to_instructions(
         said[arguments[0]] = capsys.readouterr().out
     assert said["recognize"].count("five") == 2
     assert "STOP HOVER 50 GO" in said["decode"]
+    assert main(["decode", "dive.mp4", "--model", "signs.npz", "--jobs", "1"]) == 2  # by the bundled grammar
+    assert "tokens of the grammar that the model cannot read: 0, 1, 2" in capsys.readouterr().err
     card = json.loads(Path("signs.json").read_text(encoding="utf-8"))
     assert card["classes"] == ["fist", "five", "point", "ring", "none"]
     assert set(card["data"]["sources_per_class"].values()) == {1}

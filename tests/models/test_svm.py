@@ -10,10 +10,11 @@ from sklearn.svm import SVC
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.vector import block_lengths, feature_vectors
-from lightgesture.models import TrainingSample, load_classifier
+from lightgesture.models import load_classifier
 from lightgesture.models.svm import SvmClassifier, radial_kernel, softmax
 from lightgesture.models.svm_file import SvmModel
 from lightgesture.training.pool.kept_sources import kept_samples
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import RIDGE, SvmSettings, sample_weights, train_svm
 
 Draw = Callable[[str, int], np.ndarray]

@@ -7,9 +7,11 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import UsageError
-from lightgesture.models import ModelError, TrainingSample, load_classifier
-from lightgesture.models.svm_file import SvmModel, read_svm_model
+from lightgesture.models import ModelError, load_classifier
+from lightgesture.models.svm import SvmClassifier
+from lightgesture.models.svm_file import SvmModel
 from lightgesture.training.model_files import write_svm_model
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 
 
@@ -25,7 +27,9 @@ def path(model: SvmModel, tmp_path: Path) -> Path:
 
 
 def test_a_written_model_reads_back_the_same(model: SvmModel, path: Path) -> None:
-    back = read_svm_model(path)
+    classifier = load_classifier(path)
+    assert isinstance(classifier, SvmClassifier)
+    back = classifier.model
     assert back.classes == model.classes
     assert back.features == model.features
     assert (back.gamma, back.temperature, back.smallest_hand) == (
@@ -43,7 +47,7 @@ def test_every_cut_is_refused(path: Path) -> None:
     for length in range(0, len(whole), max(1, len(whole) // 40)):
         path.write_bytes(whole[:length])
         with pytest.raises(ModelError) as refusal:
-            read_svm_model(path)
+            load_classifier(path)
         assert str(path) in str(refusal.value)
         assert "\n" not in str(refusal.value)
 
@@ -57,7 +61,7 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes) -> None:
 
 def test_a_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="cannot be read"):
-        read_svm_model(tmp_path)
+        load_classifier(tmp_path)
 
 
 def test_a_pickle_is_never_opened(tmp_path: Path) -> None:
@@ -67,19 +71,19 @@ def test_a_pickle_is_never_opened(tmp_path: Path) -> None:
     with (tmp_path / "pickle.npz").open("wb") as stream:
         np.savez(stream, header=header, **arrays)  # type: ignore[arg-type]
     with pytest.raises(ModelError, match="pickle"):
-        read_svm_model(tmp_path / "pickle.npz")
+        load_classifier(tmp_path / "pickle.npz")
 
 
 def test_another_version_is_refused(path: Path, changed: Callable[..., Path]) -> None:
     changed(path, lambda header, arrays: header.update(format=99))
     with pytest.raises(ModelError, match="format 99"):
-        read_svm_model(path)
+        load_classifier(path)
 
 
 def test_another_kind_is_refused(path: Path, changed: Callable[..., Path]) -> None:
     changed(path, lambda header, arrays: header.update(kind="forest"))
     with pytest.raises(ModelError, match="no svm model"):
-        read_svm_model(path)
+        load_classifier(path)
 
 
 @pytest.mark.parametrize("name", ["mean", "projection", "centres", "weights", "bias"])
@@ -90,7 +94,7 @@ def test_wrong_shapes_and_nan_are_refused(path: Path, name: str, changed: Callab
         arrays[name] = arrays[name][:-1]
 
     with pytest.raises(ModelError, match="shape"):
-        read_svm_model(changed(path, cut))
+        load_classifier(changed(path, cut))
     path.write_bytes(whole)
 
     def spoil(header: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -98,7 +102,7 @@ def test_wrong_shapes_and_nan_are_refused(path: Path, name: str, changed: Callab
         arrays[name].flat[0] = np.nan
 
     with pytest.raises(ModelError, match="NaN"):
-        read_svm_model(changed(path, spoil))
+        load_classifier(changed(path, spoil))
 
 
 @pytest.mark.parametrize(
@@ -122,7 +126,7 @@ def test_a_damaged_header_is_refused_in_one_line(
     path: Path, change: Callable[..., None], changed: Callable[..., Path]
 ) -> None:
     with pytest.raises(ModelError) as refusal:
-        read_svm_model(changed(path, change))
+        load_classifier(changed(path, change))
     assert str(path) in str(refusal.value)
     assert "\n" not in str(refusal.value)
 

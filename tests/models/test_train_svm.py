@@ -5,16 +5,17 @@ import numpy as np
 import pytest
 
 from lightgesture.features.vector import block_lengths
-from lightgesture.models import ModelError, TrainingSample
-from lightgesture.models.calibration import fit_temperature
+from lightgesture.models import ModelError
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.training.pool.kept_sources import ONE_IN, assign_folds, kept_samples
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import (
     UNFITTED_TEMPERATURE,
     SvmSettings,
     sample_weights,
     train_svm,
 )
+from lightgesture.training.temperature import fit_temperature
 
 NAMES = ("1", "5", "none")
 

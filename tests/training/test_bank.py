@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import InputError
-from lightgesture.features.find.bank import OTHER, OTHER_TIMES
+from lightgesture.features.find.bank import OTHER
 from lightgesture.models import CLASSES, NONE
 from lightgesture.training.datasets import find_data
 from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions import bank as training
-from lightgesture.training.regions.bank import hand_outlines, make_bank
+from lightgesture.training.regions.bank import OTHER_TIMES, hand_outlines, make_bank
 
 
 @pytest.fixture(scope="module")

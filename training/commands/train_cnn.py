@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lightgesture.config.parsers import whole
-from lightgesture.console import say
-from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.training.commands.hand_data import add_data_arguments
+from lightgesture.errors import UsageError
+from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
 from lightgesture.training.commands.train import model_path
 
 if TYPE_CHECKING:
@@ -48,12 +47,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "(avx512_bf16, amx) and several times as long on others",
     )
     parser.add_argument(
-        "--copies",
-        type=whole,
-        metavar="N",
-        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
-    )
-    parser.add_argument(
         "--synthetic", type=whole, metavar="N", help="rendered hands beside the real ones (default: 12000)"
     )
     parser.add_argument(
@@ -63,25 +56,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes that draw, and larger nets that learn at a time (default: 1); changes nothing else",
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
 
 def run(args: argparse.Namespace) -> int:
     """Train, write the model and its card, and tell the scores of sources held out."""
-    from lightgesture.models import ModelError
-    from lightgesture.training.card import summary
     from lightgesture.training.nets.cnn import train_cnn_to_file
 
     out = model_path(args.out)
-    progress = (lambda _: None) if args.quiet else say
-    try:
-        card = train_cnn_to_file(_training(args), out, progress)
-    except ModelError as error:
-        raise UsageError(str(error)) from error
-    if not args.quiet:
-        for line in summary(card, out):
-            say(line)
-    return ExitStatus.OK
+    training = _training(args)
+    return train_and_tell(lambda progress: train_cnn_to_file(training, out, progress), out, args.quiet)
 
 
 def _training(args: argparse.Namespace) -> "CnnTraining":

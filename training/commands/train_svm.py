@@ -5,9 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from lightgesture.config.parsers import whole
-from lightgesture.console import say
-from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.training.commands.hand_data import add_data_arguments
+from lightgesture.errors import UsageError
+from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
 from lightgesture.training.commands.train import model_path
 
 
@@ -23,12 +22,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", default="svm.npz", metavar="NPZ", help="model file (default: svm.npz)")
     parser.add_argument(
-        "--copies",
-        type=whole,
-        metavar="N",
-        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
-    )
-    parser.add_argument(
         "--centres",
         type=whole,
         metavar="N",
@@ -42,13 +35,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes that draw (default: 1); changes nothing else",
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
 
 def run(args: argparse.Namespace) -> int:
     """Train, write the model and its card, and tell the scores of sources held out."""
-    from lightgesture.models import ModelError
-    from lightgesture.training.card import summary
     from lightgesture.training.svm.machine import SvmSettings
     from lightgesture.training.svm.train import SvmTraining, train_svm_to_file
     from lightgesture.training.time_left import tenths
@@ -74,12 +64,7 @@ def run(args: argparse.Namespace) -> int:
         svm = replace(svm, centres=args.centres)
     if args.steps is not None:
         svm = replace(svm, steps=args.steps)
-    progress = (lambda _: None) if args.quiet else say
-    try:
-        card = train_svm_to_file(replace(training, pool=pool, svm=svm), out, tenths(progress))
-    except ModelError as error:
-        raise UsageError(str(error)) from error
-    if not args.quiet:
-        for line in summary(card, out):
-            say(line)
-    return ExitStatus.OK
+    training = replace(training, pool=pool, svm=svm)
+    return train_and_tell(
+        lambda progress: train_svm_to_file(training, out, tenths(progress)), out, args.quiet
+    )

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from lightgesture._version import __version__
 from lightgesture.features.outline.contours import contour_length
-from lightgesture.models import in_order
-from lightgesture.models.calibration import fit_temperature, softmax
+from lightgesture.models.calibration import softmax
 from lightgesture.models.cnn import CnnClassifier, CnnModel
 from lightgesture.training.card import held_out_section, make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
@@ -29,6 +28,8 @@ from lightgesture.training.pool.patch_kinds import (
 )
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import read_rows, rows_digest
+from lightgesture.training.samples import in_order
+from lightgesture.training.temperature import fit_temperature
 from lightgesture.training.time_left import tenths
 
 if TYPE_CHECKING:

@@ -18,9 +18,10 @@ from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.proposals import propose
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Box, Image
-from lightgesture.models import NONE, TrainingSample
+from lightgesture.models import NONE
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.pool.samples import LabelledHand
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.tables import picture_path, table_rows
 
 Random = np.random.Generator

@@ -11,7 +11,7 @@ import numpy as np
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Image
-from lightgesture.models import CLASSES, NONE, TrainingSample
+from lightgesture.models import CLASSES, NONE
 from lightgesture.synth.crops import CropMaker, CropSettings
 from lightgesture.training.pictures.augment import (
     CANVAS,
@@ -25,6 +25,7 @@ from lightgesture.training.pictures.hidden_hands import hide
 from lightgesture.training.pictures.light import relight
 from lightgesture.training.pool.negatives import Scene, missed_hand, negatives, read_backgrounds, read_scenes
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
+from lightgesture.training.samples import TrainingSample
 
 Random = np.random.Generator
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Box
-from lightgesture.models import TrainingSample
 from lightgesture.training.pool.patch_kinds import MARGIN, PATCH, Originals, PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool
+from lightgesture.training.samples import TrainingSample
 
 ALTERED_WEIGHT: Final = 0.25
 """Weight of a row that is no plain hand (altered much, hidden, no hand, rendered) beside 1 of a hand as it is or hardly

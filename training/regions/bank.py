@@ -1,6 +1,6 @@
 """The contour bank made from a data folder: outlines of cut-out hands, class by class, and of other things."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.bank import OTHER, Bank, build_bank
+from lightgesture.features.find.bank import OTHER, Bank, DescriptorSettings, describe_outlines
 from lightgesture.features.find.proposals import propose
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.outline.contours import outline
@@ -21,7 +21,7 @@ from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions.region_pictures import NEGATIVE_SETS, NEVER
 
 Contour = NDArray[np.int32]
-
+Float = NDArray[np.float32]
 
 CENTRES: Final = 16
 """Typical outlines kept of each token."""
@@ -31,6 +31,10 @@ FRAMES: Final = 240
 """Whole frames in which other things are looked for, of people and of water."""
 OTHERS: Final = 8
 """Outlines kept of one frame."""
+OTHER_TIMES: Final = 4
+"""Centres of other things for one of each hand class: they are far more varied than one sign."""
+ROUNDS: Final = 30
+"""Most rounds of k-means; it settles in fewer."""
 OTHER_IOU: Final = 0.2
 """IoU with every labelled hand below which a region is something else."""
 
@@ -109,3 +113,66 @@ def _regions_beside_hands(sample: Sample, colours: ColourStage) -> list[Contour]
     overlap = pairwise_iou(proposals.boxes, hands / np.tile(colour.scale, 2))
     beside = np.flatnonzero((overlap < OTHER_IOU).all(axis=1))
     return [proposals.contours[index] for index in beside]
+
+
+def build_bank(
+    contours_by_class: Mapping[str, Sequence[Contour]],
+    per_class: int,
+    seed: int,
+    settings: DescriptorSettings | None = None,
+) -> Bank:
+    """A bank of at most `per_class` centres for each class, `OTHER_TIMES` as many for `OTHER`.
+
+    contours_by_class: outlines as `describe_outlines` takes them; their mirror images count too, because either hand
+    may make a sign. A class with fewer outlines than centres gives them all. The same arguments give the same bank.
+    Raises ValueError for a class without an outline, or no class.
+    """
+    settings = settings or DescriptorSettings()
+    rng = np.random.default_rng(seed)
+    centres, owner = [], []
+    for index, (name, contours) in enumerate(contours_by_class.items()):
+        if not contours or per_class < 1:
+            raise ValueError(
+                f"class {name!r} has {len(contours)} outlines for {per_class} centres; give one at least"
+            )
+        described = describe_outlines(contours, settings)
+        count = per_class * (OTHER_TIMES if name == OTHER else 1)
+        found = k_means(np.concatenate([described, mirrored(described)]), count, rng)
+        centres.append(found)
+        owner.append(np.full(len(found), index, np.int16))
+    if not centres:
+        raise ValueError("no classes; give the outlines of one at least")
+    return Bank(tuple(contours_by_class), np.concatenate(centres), np.concatenate(owner), settings)
+
+
+def k_means(points: Float, count: int, rng: np.random.Generator) -> Float:
+    """`count` centres of points, float32 (n, d) -> (min(n, count), d).
+
+    Lloyd's rounds from the seeding of Arthur and Vassilvitskii, "k-means++: The Advantages of Careful Seeding", 2007.
+    """
+    if len(points) <= count:
+        return points
+    chosen = [int(rng.integers(len(points)))]
+    nearest = np.square(points - points[chosen[0]]).sum(axis=1)
+    while len(chosen) < count and nearest.sum() > 0.0:
+        chosen.append(int(rng.choice(len(points), p=nearest / nearest.sum())))
+        nearest = np.minimum(nearest, np.square(points - points[chosen[-1]]).sum(axis=1))
+    centres = points[chosen].astype(np.float64)
+    assigned = np.full(len(points), -1)
+    for _ in range(ROUNDS):
+        squares = np.square(centres).sum(axis=1) - 2.0 * points @ centres.T
+        before, assigned = assigned, squares.argmin(axis=1)
+        if np.array_equal(before, assigned):
+            break
+        sums = np.zeros_like(centres)
+        np.add.at(sums, assigned, points)
+        sizes = np.bincount(assigned, minlength=len(centres))[:, None]
+        # A centre that lost its last point stays where it was.
+        centres = np.where(sizes > 0, sums / np.maximum(sizes, 1), centres)
+    return np.asarray(centres, np.float32)
+
+
+def mirrored(descriptors: Float) -> Float:
+    """Descriptors of the same outlines flipped left to right, float32 (n, settings.length)."""
+    half = descriptors.shape[1] // 2
+    return np.concatenate([-descriptors[:, :half], descriptors[:, half:]], axis=1)

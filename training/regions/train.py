@@ -12,7 +12,7 @@ import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, Selector
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_selector
@@ -91,7 +91,7 @@ def train_regions(
     pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
-    write_selector(Selector(classical, LearnedParts(*learned, places, pairs)), out)
+    write_selector(classical, LearnedParts(*learned, places, pairs), out)
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 

@@ -14,15 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.vector import VectorSettings, block_lengths
-from lightgesture.models.calibration import fit_temperature, softmax
+from lightgesture.models.calibration import softmax
+from lightgesture.models.classes import CLASSES
 from lightgesture.models.errors import ModelError
-from lightgesture.models.samples import CLASSES, TrainingSample
 from lightgesture.models.svm import SvmClassifier, radial_kernel
 from lightgesture.models.svm_file import SvmModel
 from lightgesture.training.pool.kept_sources import LEAST_FITTED, HeldOut, kept_samples
 from lightgesture.training.pool.patch_kinds import CONTOUR, PATCH, SMALLEST_HAND
+from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.descent import Machine, descend
 from lightgesture.training.svm.projection import ROWS, Described, Progress, describe, fit_projection, in_parts
+from lightgesture.training.temperature import fit_temperature
 
 Float = NDArray[np.float32]
 Double = NDArray[np.float64]

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.vector import VectorSettings, block_lengths, feature_vectors
-from lightgesture.models import ModelError, TrainingSample
+from lightgesture.models import ModelError
+from lightgesture.training.samples import TrainingSample
 
 Float = NDArray[np.float32]
 Double = NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy as np
 
 from lightgesture._version import __version__
 from lightgesture.features.vector import block_lengths
-from lightgesture.models import CLASSES, in_order
+from lightgesture.models import CLASSES
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_json, write_svm_model
 from lightgesture.training.nets.checkpoints import checkpoint_folder, peak_memory_mib
@@ -17,6 +17,7 @@ from lightgesture.training.pool.patch_kinds import PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import make_pool
 from lightgesture.training.pool.pool_samples import pool_samples
 from lightgesture.training.pool.samples import read_rows, rows_digest
+from lightgesture.training.samples import in_order
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 from lightgesture.training.svm.projection import Progress
 

@@ -14,7 +14,7 @@ from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from lightgesture.errors import ExitStatus, InputError
-from lightgesture.sources import open_source
+from lightgesture.sources import SourceOptions, open_source
 from lightgesture.sources.bag_clock import BagClock
 
 IMAGES = [np.full((12, 16, 3), (10 + 40 * n, 200 - 40 * n, 90), np.uint8) for n in range(4)]
@@ -120,12 +120,12 @@ def test_without_stamps_the_time_of_recording_counts(make_bag):
 
 def test_topics(make_bag):
     path = make_bag("ros1", left=raw, right=compressed, depth=text)
-    with open_source(path, topic="/right") as source:
+    with open_source(path, SourceOptions(topic="/right")) as source:
         assert len(list(source)) == 4
     with pytest.raises(InputError, match=r"holds 2 image topics; choose one with --topic: /left, /right$"):
         open_source(path)
     with pytest.raises(InputError, match=r"has no image topic /depth; those there are: /left, /right$"):
-        open_source(path, topic="/depth")
+        open_source(path, SourceOptions(topic="/depth"))
 
 
 def test_a_bag_without_pictures(make_bag):

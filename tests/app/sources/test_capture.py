@@ -1,4 +1,4 @@
-"""Cameras, network streams and GStreamer, read by OpenCV or by what stands in for a camera."""
+"""Cameras, network streams and GStreamer, or what stands in for them."""
 
 import socket
 from typing import ClassVar
@@ -10,8 +10,9 @@ import pytest
 from lightgesture.benchmarks.mjpeg_server import MjpegServer
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources import SourceOptions, live_source
-from lightgesture.sources.capture import CaptureStream, open_camera, open_gstreamer, open_network
+from lightgesture.sources.capture import CaptureStream, open_camera, open_gstreamer
 from lightgesture.sources.http_stream import HttpStream
+from lightgesture.sources.network import NetworkStream
 from lightgesture.sources.standard_input import StandardInputStream
 
 
@@ -99,12 +100,12 @@ def test_a_picture_of_a_kind_that_cannot_be_used(camera, monkeypatch):
 
 
 def test_ffmpeg_reads_a_stream_and_tells_its_end():
-    """The same back-end and class as for RTSP, over a protocol that needs no server of another's making."""
+    """The same class as for RTSP, over a protocol that needs no server of another's making."""
     files = [cv2.imencode(".jpg", np.full((48, 64, 3), 30 * n, np.uint8))[1].tobytes() for n in range(8)]
     with MjpegServer(files, fps=100, limit=40) as server:
         shapes = []
-        stream = CaptureStream("name", server.address, cv2.CAP_FFMPEG)
-        with pytest.raises(InputError, match=r"^name: broke off, or sends nothing more"), stream:
+        stream = NetworkStream(server.address)
+        with pytest.raises(InputError, match=r"^http://127.*: broke off, or sends nothing more"), stream:
             shapes.extend(image.shape for image in stream)
     assert set(shapes) == {(48, 64, 3)}
     assert len(shapes) > 20
@@ -114,8 +115,11 @@ def test_ffmpeg_gives_up_on_a_silent_peer(monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as server:
         address = f"rtsp://user:secret@127.0.0.1:{server.getsockname()[1]}/cam"
         monkeypatch.setattr("lightgesture.sources.types.TIMEOUT_S", 0.3)
-        stream = open_network(address)
-        with pytest.raises(InputError, match=r"^rtsp://127.0.0.1:\d+/cam: cannot be opened"), stream:
+        stream = NetworkStream(address)
+        with (
+            pytest.raises(InputError, match=r"^rtsp://127.0.0.1:\d+/cam: cannot be opened .timed out"),
+            stream,
+        ):
             pass
 
 
@@ -142,8 +146,8 @@ def test_gstreamer_where_opencv_has_it(camera, monkeypatch):
         ("0", CaptureStream),
         ("/dev/video9", CaptureStream),
         ("/dev/null", CaptureStream),
-        ("rtsp://rov/cam", CaptureStream),
-        ("udp://127.0.0.1:5600", CaptureStream),
+        ("rtsp://rov/cam", NetworkStream),
+        ("udp://127.0.0.1:5600", NetworkStream),
     ],
 )
 def test_names_of_streams(name, kind):

@@ -1,0 +1,413 @@
+"""The rule "sentence": the best reading of the whole sentence is issued, or, where it is in doubt, nothing.
+
+Searching is `search`; here it is decided what the diver is told of it, and when a sentence is sure enough. A sentence
+is issued as soon as its end word was shown for the least length, if all of these hold, each bound made stricter by
+`caution`:
+
+- the best reading with another text is clearly behind ("ambiguous"),
+- every word was seen well for once ("weak_sign"),
+- no longer time than a passage lies between two signs with both hands in view ("passed_over"),
+- no part of it is explained much better by signs that make no sentence ("does_not_fit").
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+from lightgesture.fsm.events import Certainty, Growth
+from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.language.grammar import Grammar
+from lightgesture.fsm.language.settings import SentenceSettings
+from lightgesture.fsm.reader import Reader
+from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
+from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.scores import GAP_SCORE
+from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search, Summary
+from lightgesture.fsm.sentence import Sentence
+from lightgesture.fsm.signs import Signs
+
+MARGIN: Final = 2.5
+"""How far the best rival text must be behind, in units of score, at caution 1."""
+
+WEAK: Final = 0.25
+"""Least geometric mean probability of a hand over the best window of each word, 0 to 1, at caution 1."""
+
+END: Final = 0.4
+"""The same of the end word, without which nothing is issued."""
+
+MISFIT: Final = 4.0
+"""How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at
+caution 1."""
+
+PASSED_S: Final = 0.4
+"""Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
+
+LONGEST_STEP_S: Final = 0.25
+"""Longest time between two frames, seconds: no sign goes on across more, for of what was not looked at nothing is
+known."""
+
+SETTLE_S: Final = 0.1
+"""How long an end word is looked at beyond its least length, seconds: the window over which it adds up is then its
+own."""
+
+PATIENCE_S: Final = 0.6
+"""How long a complete sentence in doubt may stand after its end word before it is rejected, seconds."""
+
+PAUSE_S: Final = 1.5
+"""Seconds without a sign after which a sentence that was dropped on the way is over for the diver too."""
+
+STEADY: Final = 0.5
+"""Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second
+GO."""
+
+SUMMARIES: Final = 5
+"""Readings of a sentence that are kept for those who ask why."""
+
+KILL: Final = 0.3
+"""The same for the word to kill: to stop is better than to go on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Doubt:
+    """Why a sentence is not issued: reason of the rejection, and where and what for the diver."""
+
+    reason: str
+    detail: str
+
+
+class SentenceRule:
+    """Reads one stream; see the module."""
+
+    def __init__(
+        self, grammar: Grammar, settings: SentenceSettings, reader: Reader, reporter: Reporter
+    ) -> None:
+        self._grammar, self._reader, self._reporter = grammar, reader, reporter
+        self._caution = settings.caution
+        self.search = Search(grammar, settings.hold_seconds)
+        control = grammar.control
+        self._control = {word for word in (control.kill, control.cancel) if word is not None}
+        self._reset()
+
+    def _reset(self) -> None:
+        """As at the start of a stream."""
+        self._told: tuple[str, ...] = ()
+        self._judged: tuple[Summary, ...] = ()
+        self._told_s = 0.0
+        self._is_told_sure = self._is_waiting = False
+        self._absent_s = self._steady_from = self._paused_s = 0.0
+        self._top, self._top_s = -1, 0.0
+
+    def interrupt(self) -> None:
+        """Frames are missing: no reading spans them."""
+        self.search.reset()
+        self._reset()
+
+    def finish(self) -> None:
+        """The end of the stream."""
+        self.search.reset()
+        self._reset()
+
+    def readings(self) -> tuple[Summary, ...]:
+        """The best readings of the last sentence when it was judged."""
+        return self._judged
+
+    # One frame
+
+    def process(self, signs: Signs, now_s: float, passed_s: float) -> None:
+        """Take in one frame; passed_s: seconds since the one before it."""
+        reader, search = self._reader, self.search
+        sentence = reader.sentence
+        if sentence is not None and now_s - sentence.touched_s >= self._grammar.dwell.timeout_s:
+            reader.drop("timeout", f"no word for {self._grammar.dwell.timeout_s:g} s")
+            self._close()
+        in_view = signs.left.seen and signs.right.seen
+        is_counted = in_view or signs.left.is_word or signs.right.is_word or self._grammar.dwell.count_hidden
+        step_s = passed_s
+        if passed_s > LONGEST_STEP_S:
+            search.break_off()
+            step_s = 0.0
+        scores = search.step(signs, step_s, passed_s if is_counted else 0.0, self._reporter.frame, now_s)
+        self._follow_top(scores, step_s)
+        self._wait_for_pause(scores, passed_s)
+        if not self._heed_steady_sign(scores, step_s):
+            self._heed_readings(now_s)
+        is_growing = self._top >= 0 and self._top_s > 0.0
+        if (is_growing or self._reporter.is_growth_shown) and (
+            now_s - self._reporter.shown_s >= DISPLAY_INTERVAL_S
+        ):
+            self._show()
+
+    def _close(self) -> None:
+        """The sentence is over; what is still shown is no part of the next one."""
+        self._judged = self.search.summaries(SUMMARIES)
+        self.search.clear()
+        self._told = ()
+        if self.search.window is not None:
+            self._spend(int(self.search.window.argmax()))
+
+    def _wait_for_pause(self, scores: Floats, passed_s: float) -> None:
+        """A diver who does not look signs on after a rejection: what follows is no new sentence before a pause."""
+        if self._is_waiting:
+            self._paused_s = 0.0 if scores[self._top] > 2 * math.log(STEADY) else self._paused_s + passed_s
+            self._is_waiting = self._paused_s < PAUSE_S
+        # What means something else inside a sentence opens none while one is open.
+        self.search.is_wary = self._is_waiting or (bool(self._told) and self._is_told_sure)
+
+    # Signs that count by themselves
+
+    def _spend(self, column: int) -> None:
+        """A sign was read: it must be gone before it counts again."""
+        self.search.spent, self._absent_s = column, 0.0
+        self._steady_from = self.search.now
+
+    def _heed_steady_sign(self, scores: Floats, step_s: float) -> bool:
+        """Words of control, the second end word, and words that open nothing: they need no sentence around them."""
+        search, reader = self.search, self._reader
+        if self.search.spent is not None:
+            is_there = scores[self.search.spent] > max(float(scores.max()), GAP_SCORE) - RELEASE_SCORE
+            self._absent_s = 0.0 if is_there else self._absent_s + step_s
+            if self._absent_s >= PASSAGE_S:
+                self.search.spent = None
+        if search.window is None or search.window_s < self._steady_from:
+            return False
+        column = int(search.window.argmax())
+        if column == self.search.spent:
+            return False
+        likelihood, shown = search.likelihood(column), search.scores.shown(column)
+        word = reader.word_of(shown)
+        is_control = word is not None and word in self._control
+        if likelihood < (KILL if is_control else STEADY):
+            return False
+        if not is_control and reader.state != "confirming":
+            return self._note(column, word)
+        hold = search.hold(column, likelihood)
+        self._spend(column)
+        if word == self._grammar.control.cancel and reader.sentence is None:
+            return False
+        reader.read(hold)
+        if reader.sentence is None:
+            self._close()
+        return True
+
+    def _note(self, column: int, word: str | None) -> bool:
+        """A word that opens no sentence while none is open: the diver is told so, once."""
+        lead = self.search.lead
+        is_idle = self._reader.sentence is None and (lead is None or self.search.behind(lead) > MISFIT)
+        if not is_idle or word is None or word in self._grammar.table.transitions[0]:
+            return False
+        self._spend(column)
+        if word == self._grammar.end:
+            self._is_waiting = False
+        self._reader.read(self.search.hold(column, self.search.likelihood(column)))
+        return True
+
+    # The sentence
+
+    def _heed_readings(self, now_s: float) -> None:
+        """Tell what the leading reading has become, and conclude it when it is complete."""
+        search, reader = self.search, self._reader
+        if reader.state == "confirming":
+            return
+        lead = search.lead
+        reading = None if lead is None else search.readings[lead]
+        if self._told and not search.has_prefix(self._told):
+            self._reject(self._misfit())
+            return
+        if lead is None or reading is None:
+            return
+        self._tell(lead, reading, now_s)
+        if search.lead is None:
+            return
+        if len(reading.spoken) >= self._grammar.limits.max_words and search.is_over(lead):
+            self._reject(
+                Doubt(reason="limit", detail=f"a sentence has at most {self._grammar.limits.max_words} words")
+            )
+        elif reading.state in self._grammar.table.accepting:
+            self._judge(lead, reading, now_s)
+        elif search.is_over(lead) and not reading.asked and len(reading.spoken) > 1:
+            self._ask_again(lead, reading)
+
+    def _tell(self, lead: int, reading: Reading, now_s: float) -> None:
+        """Words on which all near readings agree are told, once each."""
+        words = reading.words
+        if words == self._told:
+            self._is_told_sure = self._is_told_sure or self.search.certainty(lead) > STEADY
+            return
+        if self.search.behind(lead) > MISFIT / self._caution:
+            return
+        agreed = words
+        for other in self.search.near(lead, MARGIN):
+            agreed = agreed[: _common(agreed, other.words)]
+        if reading.state in self._grammar.table.accepting:
+            agreed = agreed[: len(words) - 1]  # the end word comes with the verdict
+        kept = _common(agreed, self._told)
+        if agreed and self._is_another(reading):
+            if len(self._told) == 1:
+                self._reject(self._inside(agreed[0]))
+            return
+        if len(agreed) <= kept or (kept == 0 and len(self._told) > 1):
+            return
+        certainties = self.search.certainties(lead)
+        if certainties[0] < WEAK * self._caution:
+            return
+        self._open(reading, agreed, certainties, now_s)
+        for place in range(kept, len(agreed)):
+            text = spell(agreed[: place + 1], self._grammar.vocabulary.join)
+            self._reporter.word(self._hold(reading, place, certainties[place]), agreed[place], text)
+        self._told, self._told_s = agreed, self.search.now
+        self._is_told_sure = certainties[0] > STEADY or len(agreed) > 1
+        self._show()
+
+    def _open(
+        self, reading: Reading, words: tuple[str, ...], certainties: list[float], now_s: float
+    ) -> Sentence:
+        """The sentence of the first words of a reading is the open one."""
+        sentence = self._reader.begin(self._hold(reading, 0, certainties[0]), words[0])
+        transitions, state = self._grammar.table.transitions, 0
+        for place, word in enumerate(words):
+            state = transitions[state][word]
+            hold = self._hold(reading, place, certainties[place])
+            sentence.add(word, hold, state, now_s, self._grammar.vocabulary.join)
+        return sentence
+
+    def _hold(self, reading: Reading, place: int, certainty: float) -> Hold:
+        spoken = reading.spoken[place]
+        return Hold(
+            pair=self.search.scores.shown(spoken.column),
+            frames=1,
+            confidence=certainty,
+            first_frame=spoken.frame,
+            first_time_s=spoken.time_s,
+        )
+
+    def _ask_again(self, lead: int, reading: Reading) -> None:
+        """A sign that was seen too badly to be issued with may be shown once more in place of itself."""
+        if self.search.certainty(lead) >= WEAK * self._caution:
+            return
+        words = {
+            near.words[-1] for near in self.search.near(lead, MARGIN) if len(near.words) == len(reading.words)
+        }
+        self.search.ask(len(reading.words), frozenset(words))
+        if self._told:
+            detail = f"{' or '.join(sorted(words))} was not seen well; show it again"
+            self._reporter.notice("repeat", detail)
+
+    def _judge(self, lead: int, reading: Reading, now_s: float) -> None:
+        """A complete sentence: issue it, wait a little for a doubt to pass, or reject it."""
+        search = self.search
+        waited = search.now - reading.touched
+        if waited < SETTLE_S and not search.is_over(lead):
+            return
+        doubt = self._doubt(lead, reading)
+        if doubt is not None:
+            if waited > PATIENCE_S and (search.is_over(lead) or waited > 2 * PATIENCE_S + search.hold_s):
+                self._reject(doubt, reading)
+            return
+        certainties = search.certainties(lead)
+        words = reading.words
+        form = self._grammar.table.accepting[reading.state]
+        sentence = self._open(reading, words, certainties, now_s)
+        kept = min(_common(words, self._told), len(words) - 1)
+        for place in range(kept, len(words) - 1):
+            text = spell(words[: place + 1], self._grammar.vocabulary.join)
+            self._reporter.word(self._hold(reading, place, certainties[place]), words[place], text)
+        if self._grammar.limits.max_digits < _longest_number(words):
+            self._reject(
+                Doubt(reason="limit", detail=f"a number has at most {self._grammar.limits.max_digits} digits")
+            )
+            return
+        self._reader.conclude(self._hold(reading, len(words) - 1, certainties[-1]), words[-1], form, sentence)
+        self._close()
+
+    # Doubts
+
+    def _doubt(self, lead: int, reading: Reading) -> Doubt | None:
+        """Why a complete reading may not be issued; None: it may."""
+        search, caution = self.search, self._caution
+        if self._is_another(reading):
+            return self._inside(reading.words[0])
+        if search.margin(lead) < MARGIN * caution:
+            rival = search.rival(lead)
+            return Doubt(reason="ambiguous", detail=f"it could as well be {rival}; sign it again")
+        certainties = search.certainties(lead)
+        weakest = min(range(len(certainties)), key=certainties.__getitem__)
+        if certainties[-1] < min(END * caution, 1.0 - END):
+            return Doubt(reason="weak_sign", detail=f"{reading.words[-1]} was not seen well; sign it again")
+        if certainties[weakest] < WEAK * caution:
+            return Doubt(
+                reason="weak_sign", detail=f"{reading.words[weakest]} was not seen well; sign it again"
+            )
+        if search.longest[lead] > PASSED_S / caution:
+            detail = f"{search.longest[lead]:.1f} s between two signs were not read; sign it again"
+            return Doubt(reason="passed_over", detail=detail)
+        behind, place = search.misfit(lead)
+        if behind > MISFIT / caution:
+            detail = f"{reading.words[place]} is not what was shown; sign it again"
+            return Doubt(reason="does_not_fit", detail=detail)
+        return None
+
+    def _is_another(self, reading: Reading) -> bool:
+        """Whether a reading is of a sentence that began after the one that was told, which is not over."""
+        return bool(self._told) and self._is_told_sure and reading.began > self._told_s
+
+    def _inside(self, word: str) -> Doubt:
+        """A start word came in mid-sentence."""
+        told = spell(self._told, self._grammar.vocabulary.join)
+        return Doubt(
+            reason="out_of_order", detail=f"{word} cannot follow {told}; expected {self._reader.expected}"
+        )
+
+    def _misfit(self) -> Doubt:
+        """What was told does not go on as any sentence would."""
+        told = spell(self._told, self._grammar.vocabulary.join)
+        return Doubt(reason="does_not_fit", detail=f"what came after {told} makes no sentence; sign it again")
+
+    def _reject(self, doubt: Doubt, reading: Reading | None = None) -> None:
+        """Nothing is issued of what was told, or of this reading."""
+        words = self._told if reading is None else reading.words
+        if words:
+            text = spell(words, self._grammar.vocabulary.join)
+            self._reader.drop(doubt.reason, doubt.detail, text)
+            self._is_waiting, self._paused_s = words[-1] != self._grammar.end, 0.0
+        self._close()
+
+    # Displays
+
+    def _follow_top(self, scores: Floats, step_s: float) -> None:
+        """Which sign is the likeliest now, and for how long it has been, for displays."""
+        top = int(scores.argmax())
+        if top == self._top and scores[top] > -2.0:
+            self._top_s += step_s
+        else:
+            self._top, self._top_s = top, 0.0
+
+    def _show(self) -> None:
+        """A display follows the sign that is growing, the best reading and how sure it is."""
+        growth = certainty = None
+        search, reader = self.search, self._reader
+        progress = self._top_s / search.hold_s
+        if 0.0 < progress < 1.0:
+            shown = search.scores.shown(self._top)
+            growth = Growth(pair=shown, word=reader.word_of(shown), progress=round(progress, DECIMALS))
+        elif not self._reporter.is_growth_shown and not self._told:
+            return
+        lead = search.lead
+        reading = None if lead is None else search.readings[lead]
+        if self._told and lead is not None and reading is not None:
+            sure = [round(value, DECIMALS) for value in search.certainties(lead)]
+            words = tuple(zip(reading.words, sure, strict=True))
+            certainty = Certainty(words=words, expected=reader.expected)
+        reader.show(growth, certainty)
+
+
+def _common(one: tuple[str, ...], other: tuple[str, ...]) -> int:
+    """Length of the beginning that two sequences share."""
+    for place, (left, right) in enumerate(zip(one, other, strict=False)):
+        if left != right:
+            return place
+    return min(len(one), len(other))
+
+
+def _longest_number(words: tuple[str, ...]) -> int:
+    """Most digits of a number among the words of a sentence."""
+    return max((len(part) for part in spell(words, None).split() if part.isdigit()), default=0)

@@ -1,0 +1,137 @@
+"""The pictures of a video stream that PyAV has opened, and what was lost between them."""
+
+import heapq
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from lightgesture.features.types import Image
+from lightgesture.sources.conversion import Converter, Deinterlacer
+
+if TYPE_CHECKING:
+    from av.container import InputContainer
+    from av.packet import Packet
+    from av.video.frame import VideoFrame
+    from av.video.stream import VideoStream
+
+MAX_FAILURES: Final = 100
+"""Reads in a row that may fail before the rest of a container counts as unreadable."""
+
+ONLY_DECODING_ORDER: Final = ("avi",)
+"""FFmpeg's names of containers that have no stamps for showing, which differ from those for decoding where a codec
+reorders frames."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """A picture of a stream.
+
+    image: uint8 (height, width, 3), BGR. stamp_s: the container's time stamp, seconds; None: it has none. lost: frames
+    between the last picture and this one that could not be decoded or shown.
+    """
+
+    image: Image
+    stamp_s: float | None
+    lost: int
+
+
+class StreamDecoder:
+    """Decodes a stream from where its container stands to the end, over damaged places.
+
+    Frames are lost that the decoder refuses, that it marks as corrupt, or that cannot be shown. objection: why one
+    could not be shown; unshown: how many. is_cut: whether the container or its last packet is damaged where it ends.
+    tell: takes remarks for the user.
+    """
+
+    def __init__(
+        self, container: "InputContainer", stream: "VideoStream", tell: Callable[[str], None]
+    ) -> None:
+        self._container, self._stream = container, stream
+        self._converter, self._deinterlacer = Converter(tell), Deinterlacer()
+        self._in_filter: deque[int] = deque()
+        self._lacks_order = container.format.name in ONLY_DECODING_ORDER
+        self._stamps: list[int] = []
+        self._undecoded = self._held_back = 0
+        self.objection: str | None = None
+        self.unshown = 0
+        self.is_cut = False
+
+    @property
+    def lost(self) -> int:
+        """Frames lost since the last picture."""
+        return self._undecoded + self._held_back
+
+    def pictures(self) -> Generator[Picture | None, None, None]:
+        """All pictures; None after a packet that gave none, for callers who wait no longer than they want to.
+
+        av.FFmpegError: the container cannot be read on, by more than damage.
+        """
+        for packet in self._packets():
+            for frame in self._decode(packet):
+                yield from self._show(frame)
+            yield None
+        for done in self._deinterlacer.flush():
+            yield from self._convert(done)
+
+    def _packets(self) -> Iterator["Packet[VideoStream] | None"]:
+        """The packets with something in them; None last."""
+        import av
+
+        failures = 0
+        while True:
+            try:
+                for packet in self._container.demux(self._stream):
+                    if packet.size:  # a recorder that dropped a frame writes an empty one; the end does too
+                        failures, self.is_cut = 0, packet.is_corrupt
+                        yield packet
+                break
+            except av.error.InvalidDataError:
+                failures, self.is_cut = failures + 1, True
+                if failures == MAX_FAILURES:
+                    break
+        yield None
+
+    def _decode(self, packet: "Packet[VideoStream] | None") -> list["VideoFrame"]:
+        import av
+
+        decoder = self._stream.codec_context
+        if self._lacks_order and packet is not None and packet.dts is not None:
+            heapq.heappush(self._stamps, packet.dts)
+        try:
+            return decoder.decode(packet)
+        except av.error.EOFError:
+            decoder.flush_buffers()
+        except (av.FFmpegError, ValueError):
+            if packet is not None:
+                self._undecoded += 1
+                self._next_stamp()
+        return []
+
+    def _show(self, frame: "VideoFrame") -> Iterator[Picture]:
+        if self._stream.time_base is not None:
+            frame.time_base = self._stream.time_base  # which those that come last lack
+        if self._lacks_order:
+            frame.pts = self._next_stamp()
+        if frame.is_corrupt:
+            self._undecoded += 1
+            return
+        self._in_filter.append(self._undecoded)
+        self._undecoded = 0
+        for done in self._deinterlacer.feed(frame):
+            yield from self._convert(done)
+
+    def _convert(self, frame: "VideoFrame") -> Iterator[Picture]:
+        lost = self._held_back + (self._in_filter.popleft() if self._in_filter else 0)
+        try:
+            image = self._converter.bgr8(frame)
+        except ValueError as error:
+            self.objection, self._held_back = str(error), lost + 1
+            self.unshown += 1
+            return
+        self._held_back = 0
+        yield Picture(image, frame.time, lost)
+
+    def _next_stamp(self) -> int | None:
+        """The earliest time that no frame has had, of a container that tells only when each is to be decoded."""
+        return heapq.heappop(self._stamps) if self._stamps else None

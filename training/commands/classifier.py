@@ -1,0 +1,71 @@
+"""What the commands that train a classifier share: the hands that the user names, and what is told of the model."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from lightgesture.config.parsers import whole
+from lightgesture.console import say
+from lightgesture.errors import ExitStatus, UsageError
+
+
+def add_data_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare them."""
+    parser.add_argument(
+        "--data",
+        metavar="CSV|DIR",
+        help="manifest with the columns path and token, and if known a box (x,y,w,h or hx0..hy1), lm, set, side; "
+        "or a folder with one folder of hand pictures a class",
+    )
+    parser.add_argument(
+        "--backgrounds",
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="pictures without hands: they stand behind altered copies and teach what is no token; repeatable",
+    )
+    parser.add_argument(
+        "--scenes",
+        metavar="CSV",
+        help="whole pictures with boxes (columns file,x,y,w,h, if known face_boxes and set): what lies beside "
+        "the hands teaches what is no token",
+    )
+    parser.add_argument(
+        "--without",
+        action="append",
+        default=[],
+        metavar="SOURCE",
+        help="source of the manifest (column set) that is left out; repeatable",
+    )
+    parser.add_argument(
+        "--copies",
+        type=whole,
+        metavar="N",
+        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
+    )
+    parser.add_argument(
+        "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default: 0)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
+
+
+def train_and_tell(
+    train: Callable[[Callable[[str], None]], dict[str, Any]], out: Path, quiet: bool
+) -> ExitStatus:
+    """Train, then tell what its card says of the model in `out`.
+
+    train: takes what tells the progress, and gives the card. quiet: tell nothing. Raises UsageError for samples that
+    will not do, and what `train` raises.
+    """
+    from lightgesture.models import ModelError
+    from lightgesture.training.card import summary
+
+    try:
+        card = train((lambda _: None) if quiet else say)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    if not quiet:
+        for line in summary(card, out):
+            say(line)
+    return ExitStatus.OK

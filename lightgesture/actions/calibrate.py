@@ -8,7 +8,7 @@ from lightgesture.calibration import Calibration, Place, calibrate
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
-from lightgesture.features.profile import Kind, save_profile
+from lightgesture.features.profile import Kind, ProfileError, load_profile, save_profile
 from lightgesture.features.types import Box
 from lightgesture.results.atomic import replacing
 from lightgesture.sources import StreamFrames, open_any
@@ -71,11 +71,21 @@ def _out(text: str) -> Path:
         raise UsageError(f"{text}: is a folder; name a file with --out")
     if not path.parent.is_dir():
         raise UsageError(f"{path.parent}: no such folder; make it or give another path with --out")
+    if path.exists() and not _is_profile(path):
+        raise UsageError(f"{path}: is no profile and would be replaced; name another file with --out")
     try:
         with tempfile.TemporaryFile(dir=path.parent):
             return path
     except OSError as error:
         raise UsageError(f"{path}: cannot be written ({error.strerror}); name another folder") from None
+
+
+def _is_profile(path: Path) -> bool:
+    try:
+        load_profile(path)
+    except ProfileError:
+        return False
+    return True
 
 
 def _place(texts: Sequence[str]) -> Place:

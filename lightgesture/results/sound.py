@@ -45,17 +45,16 @@ class SoundTrack:
     def __init__(self, paths: Sequence[str]) -> None:
         self._paths = list(paths)
         self._first = _open(self._paths[0]) if self._paths else None
-        self._input: AudioStream | None = None
         self._output: AudioStream | None = None
         self._container: OutputContainer | None = None
-        self._packets: Iterator[tuple[float, Packet]] = iter(())
-        self._waiting: tuple[float, Packet] | None = None
+        self._packets: Iterator[tuple[float, Packet[Any]]] = iter(())
+        self._waiting: tuple[float, Packet[Any]] | None = None
 
     @property
     def metadata(self) -> dict[str, str]:
         """What the video says about itself and an .mp4 file can keep."""
         found = self._first.metadata if self._first is not None else {}
-        return {name: value for name, value in found.items() if name in _KEPT_METADATA}
+        return {name.lower(): value for name, value in found.items() if name.lower() in _KEPT_METADATA}
 
     def add_to(self, container: "OutputContainer") -> None:
         """Begin a stream of sound in a file, if there is any. Before the first packet of it is written."""
@@ -63,11 +62,11 @@ class SoundTrack:
 
         if self._first is None or not self._first.streams.audio:
             return
-        self._input, self._container = self._first.streams.audio[0], container
-        codec = self._input.codec_context
+        original, self._container = self._first.streams.audio[0], container
+        codec = original.codec_context
         with suppress(av.FFmpegError, ValueError, TypeError):
             if codec.codec.canonical_name in COPIED:
-                self._output = container.add_stream_from_template(self._input)
+                self._output = container.add_stream_from_template(original)
                 self._packets = self._copied()
             else:
                 self._output = container.add_stream(ENCODER, codec.rate, layout=codec.layout.name)
@@ -102,10 +101,11 @@ class SoundTrack:
             if container is not self._first:
                 container.close()
 
-    def _copied(self) -> Iterator[tuple[float, "Packet"]]:
+    def _copied(self) -> Iterator[tuple[float, "Packet[Any]"]]:
         import av
 
         last: int | None = None
+        output: Any = self._output
         for container, shift_s in self._parts():
             with suppress(av.FFmpegError):  # the sound ends where it is damaged
                 for packet in container.demux(container.streams.audio[0]):
@@ -117,10 +117,10 @@ class SoundTrack:
                         last is not None and packet.dts <= last
                     ):  # where two chapters meet, or a clock ran back
                         continue
-                    last, packet.stream = packet.dts, self._output
+                    last, packet.stream = packet.dts, output
                     yield float(packet.pts * packet.time_base), packet
 
-    def _encoded(self) -> Iterator[tuple[float, "Packet"]]:
+    def _encoded(self) -> Iterator[tuple[float, "Packet[Any]"]]:
         import av
 
         output: Any = self._output
@@ -130,7 +130,7 @@ class SoundTrack:
         for container, shift_s in self._parts():
             with suppress(av.FFmpegError):
                 for frame in container.decode(container.streams.audio[0]):
-                    if frame.pts is None:
+                    if frame.pts is None or frame.time_base is None:
                         continue
                     frame.pts += round(shift_s / frame.time_base)
                     for part in resampler.resample(frame):
@@ -141,7 +141,7 @@ class SoundTrack:
             yield from _timed(encoder.encode(None), output, rate)
 
 
-def _timed(packets: Sequence["Packet"], output: Any, rate: int) -> Iterator[tuple[float, "Packet"]]:
+def _timed(packets: Sequence["Packet[Any]"], output: Any, rate: int) -> Iterator[tuple[float, "Packet[Any]"]]:
     for packet in packets:
         packet.stream = output
         yield float((packet.pts or 0) * (packet.time_base or Fraction(1, rate))), packet

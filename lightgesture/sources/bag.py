@@ -64,7 +64,7 @@ def _is_metadata(path: str) -> bool:
 class _Entry(NamedTuple):
     """A message with its place in the topic; `kind`: as of `picture_type`. message: or what is wrong with it."""
 
-    index: int
+    number: int
     kind: str
     recorded_ns: int
     message: PictureMessage | ValueError
@@ -101,7 +101,7 @@ class BagFile(Source):
 
     def _begin(self) -> None:
         if self._bag.remark is not None:
-            say(f"{self.name}: {self._bag.remark}")
+            self._tell(self._bag.remark)
         self.frame_count = sum(n for one, n in self._bag.channels.items() if one.topic == self._topic)
         self._entries = self._read()
         self._first = list(islice(self._entries, LOOKED_AT))
@@ -131,7 +131,7 @@ class BagFile(Source):
                 if not is_packet(kind, message):
                     yield self._frame(message_to_bgr8(message, depth), index, time_ns)
                     continue
-                decoder = decoder or PacketDecoder(message.format or "")
+                decoder = decoder or PacketDecoder(message.format or "", self._tell)
                 pictures = decoder.feed(index, time_ns, message.data)
             except ValueError as error:
                 self._left_out.append(f"message {index} {error}")
@@ -141,11 +141,14 @@ class BagFile(Source):
             yield from self._video_frames(decoder.flush())
         self._check_end()
 
+    def _tell(self, text: str) -> None:
+        say(f"{self.name}: {text}")
+
     def _video_frames(self, pictures: list[tuple[Image, int]]) -> Iterator[Frame]:
         for image, time_ns in pictures:
             if not self._given and self._left_out:
                 # A recorder that joined in the middle has packets that need one before its first.
-                say(f"{self.name}: {len(self._left_out)} messages before the first whole picture")
+                self._tell(f"{len(self._left_out)} messages before the first whole picture")
                 self._left_out.clear()
             yield self._frame(image, self._given + len(self._left_out), time_ns)
 
@@ -171,7 +174,7 @@ class BagFile(Source):
         """InputError: not all could be read."""
         wrong: list[str] = []
         if self._damage == UNCLOSED and not self._left_out:
-            say(f"{self.name}: the bag {UNCLOSED}; read as far as it goes, {self._given} pictures")
+            self._tell(f"the bag {UNCLOSED}; read as far as it goes, {self._given} pictures")
         elif self._damage is not None:
             wrong.append(f"the bag {self._damage}, {self._given} pictures of it could be read")
         if self._left_out:

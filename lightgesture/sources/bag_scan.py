@@ -7,8 +7,10 @@ damaged chunk is left out, of one that is cut off all is taken that is there.
 import re
 import sqlite3
 import struct
+import sys
 from collections.abc import Iterator
 from contextlib import closing
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO, Final, NamedTuple
@@ -88,19 +90,12 @@ def _decompressor(compression: str) -> Any:
     if compression in ("", "none"):
         return bytes
     if compression == "bz2":
-        import bz2
-
-        return bz2.BZ2Decompressor().decompress
+        return import_module("bz2").BZ2Decompressor().decompress
     if compression == "lz4":
-        import lz4.frame
-
-        return lz4.frame.LZ4FrameDecompressor().decompress
+        return import_module("lz4.frame").LZ4FrameDecompressor().decompress
     if compression == "zstd":
-        try:
-            from compression import zstd
-        except ImportError:
-            from backports import zstd
-        return zstd.ZstdDecompressor().decompress
+        package = "compression" if sys.version_info >= (3, 14) else "backports"
+        return import_module(f"{package}.zstd").ZstdDecompressor().decompress
     raise ScanError(f"is compressed by {compression!r}, which is not known here")
 
 

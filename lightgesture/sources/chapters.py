@@ -4,7 +4,6 @@ import os
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from datetime import datetime
 from typing import Final
 
 from lightgesture.errors import InputError
@@ -56,8 +55,8 @@ class JoinedVideos(Source):
     """The chapters of one recording as one source: time and index go on from one to the next.
 
     paths: of the chapters, in order. open_one: what opens one of them. A chapter that cannot be read is left out, and
-    one that breaks off ends there; the others go on, and after the last one InputError tells it. start_utc: that of the
-    first.
+    one that breaks off ends there; the others go on, after a gap, and after the last one InputError tells it.
+    start_utc: that of the first.
     """
 
     def __init__(self, paths: Sequence[str], open_one: Callable[[str], Source]) -> None:
@@ -65,7 +64,7 @@ class JoinedVideos(Source):
         self._rest = list(paths[1:])
         self._open_one = open_one
         self._source = open_one(paths[0])
-        self.start_utc: datetime | None = getattr(self._source, "start_utc", None)
+        self.start_utc = self._source.start_utc
         count = self._source.frame_count
         self.frame_count = (
             None if count is None else count * len(paths)
@@ -77,14 +76,16 @@ class JoinedVideos(Source):
 
     def __iter__(self) -> Iterator[Frame]:
         failures: list[str] = []
-        index, start_s = 0, 0.0
+        index, start_s, told = 0, 0.0, 0
         while True:
             first: Frame | None = None
             last: Frame | None = None
             try:
                 for frame in self._source:
-                    first, last = first or frame, frame
-                    yield replace(frame, index=index + frame.index, time_s=round(start_s + frame.time_s, 6))
+                    gap = frame.gap or (failures[-1] if len(failures) > told else None)
+                    first, last, told = first or frame, frame, len(failures)
+                    time_s = round(start_s + frame.time_s, 6)
+                    yield replace(frame, index=index + frame.index, time_s=time_s, gap=gap)
             except InputError as error:
                 failures.append(str(error))
             if first is not None and last is not None:

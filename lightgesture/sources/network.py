@@ -26,8 +26,9 @@ OPTIONS: Final = {"rtsp_flags": "prefer_tcp"}
 class NetworkStream(LiveSource):
     """The pictures of a stream as they come; damaged ones are passed over, interlaced ones deinterlaced."""
 
-    def __init__(self, address: str) -> None:
-        self.name = split_address(address).name
+    def __init__(self, address: str, name: str | None = None) -> None:
+        """name: what may be shown; None: the address without its login."""
+        self.name = name or split_address(address).name
         self.is_reopened = True
         self._address = address
         self._container: InputContainer | None = None
@@ -38,9 +39,7 @@ class NetworkStream(LiveSource):
 
         start_s = time.monotonic()
         try:
-            self._container = av.open(
-                self._address, timeout=types.TIMEOUT_S, options=OPTIONS, metadata_errors="replace"
-            )
+            self._container = self.open()
         except (av.FFmpegError, ValueError) as error:
             # An interrupted FFmpeg gives many reasons, and this one never.
             reason = "timed out" if time.monotonic() - start_s >= types.TIMEOUT_S else _reason(error)
@@ -48,6 +47,12 @@ class NetworkStream(LiveSource):
                 f"{self.name}: cannot be opened ({reason}); is it there, and used by nobody else?"
             ) from None
         return self
+
+    def open(self) -> "InputContainer":
+        """The container of the stream; av.FFmpegError or ValueError: it cannot be opened."""
+        import av
+
+        return av.open(self._address, timeout=types.TIMEOUT_S, options=OPTIONS, metadata_errors="replace")
 
     def close(self) -> None:
         """Let go of the connection."""
@@ -98,4 +103,6 @@ class NetworkStream(LiveSource):
 
 def _reason(error: Exception) -> str:
     """FFmpeg's reason, never its text, which names the address with its login."""
+    if type(error).__name__ == "ExitError":  # what it gives when its time is up
+        return "timed out"
     return str(getattr(error, "strerror", None) or "an unknown fault")

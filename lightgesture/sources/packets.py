@@ -1,5 +1,6 @@
 """Pieces of a video, as topics of bags have them, to pictures."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import reason_of
 from lightgesture.features.types import Image
+from lightgesture.sources.conversion import Converter
 
 if TYPE_CHECKING:
     from av.video.frame import VideoFrame
@@ -25,10 +27,11 @@ _CODECS = {
 class PacketDecoder:
     """Decodes the packets of one video, each with a number and a time.
 
-    format: of the messages, such as "h264" or "hevc_nvenc". ValueError: a codec that is not known here.
+    format: of the messages, such as "h264" or "hevc_nvenc". tell: takes remarks on its colours. ValueError: a codec
+    that is not known here.
     """
 
-    def __init__(self, format: str) -> None:  # noqa: A002 - what messages call it
+    def __init__(self, format: str, tell: Callable[[str], None]) -> None:  # noqa: A002 - what messages call it
         import av
         from av.video.codeccontext import VideoCodecContext
 
@@ -38,7 +41,7 @@ class PacketDecoder:
         context = av.CodecContext.create(name, "r")
         assert isinstance(context, VideoCodecContext)
         context.thread_count = 1  # more would keep pictures back
-        self._context = context
+        self._context, self._converter = context, Converter(tell)
         self._pending: dict[int, int] = {}
 
     def feed(self, number: int, time_ns: int, data: NDArray[np.uint8]) -> list[tuple[Image, int]]:
@@ -66,7 +69,7 @@ class PacketDecoder:
     def _timed(self, frames: list["VideoFrame"]) -> list[tuple[Image, int]]:
         whole = [(frame, self._time_of(frame)) for frame in frames]
         return [
-            (np.asarray(frame.to_ndarray(format="bgr24"), np.uint8), time_ns)
+            (self._converter.bgr8(frame), time_ns)
             for frame, time_ns in whole
             if time_ns is not None and not frame.is_corrupt
         ]

@@ -8,20 +8,16 @@ at what comes.
 import socket
 import struct
 import time
-from collections.abc import Iterator
 from io import BytesIO
 from ipaddress import ip_address
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Self
+from typing import TYPE_CHECKING, Final
 from urllib.parse import urlsplit
 
-import numpy as np
-
 from lightgesture.errors import InputError, UsageError, reason_of
-from lightgesture.features.types import Image
 from lightgesture.sources import types
 from lightgesture.sources.address import hide_login
-from lightgesture.sources.types import LiveSource
+from lightgesture.sources.network import NetworkStream
 
 if TYPE_CHECKING:
     from av.container import InputContainer
@@ -38,69 +34,28 @@ _H264_KINDS = frozenset({1, 5, 7, 24, 28})
 _SYNC_BYTE, _TS_PACKET = 0x47, 188
 
 
-class RtpStream(LiveSource):
+class RtpStream(NetworkStream):
     """The pictures of an RTP stream as they come; damaged ones are passed over.
 
     description: an SDP; empty: host and port of `name` are listened at, and what comes there is described.
     """
 
     def __init__(self, name: str, description: bytes = b"") -> None:
-        self.name = hide_login(name)
+        super().__init__(name, hide_login(name))
         self._description = description
         self._place = ("", 0) if description else _listen_at(name)
-        self._container: InputContainer | None = None
 
-    def __enter__(self) -> Self:
+    def open(self) -> "InputContainer":
+        """A container of what comes. InputError: nothing does, or the port is taken."""
         import av
 
-        description = self._description or self._look()
-        try:
-            self._container = av.open(
-                BytesIO(description), format="sdp", timeout=types.TIMEOUT_S, options=_OPTIONS
-            )
-        except (av.FFmpegError, ValueError) as error:
-            raise InputError(
-                f"{self.name}: cannot be opened ({_reason(error)}); does the vehicle send to this machine, and has no "
-                "other program the port?"
-            ) from None
-        if not self._container.streams.video:
-            self.close()
-            raise InputError(
-                f"{self.name}: describes no video that can be decoded; look at the camera's settings"
-            )
-        return self
-
-    def close(self) -> None:
-        """Let go of the port."""
-        if self._container is not None:
-            self._container.close()
-            self._container = None
-
-    def __iter__(self) -> Iterator[Image]:
-        import av
-
-        assert self._container is not None
-        seen_s = time.monotonic()
-        stream = self._container.streams.video[0]
-        stream.codec_context.thread_count = 1  # more would keep pictures back
-        try:
-            for packet in self._container.demux(stream):
-                try:
-                    frames = packet.decode()
-                except av.error.InvalidDataError:  # pictures before the first whole one, or with lost packets
-                    frames = []
-                for frame in frames:
-                    if not frame.is_corrupt:
-                        seen_s = time.monotonic()
-                        yield np.asarray(frame.to_ndarray(format="bgr24"), np.uint8)
-                if time.monotonic() - seen_s > types.NO_PICTURE_S:
-                    raise InputError(
-                        f"{self.name}: sends data, but no whole picture for {types.NO_PICTURE_S:g} s; have the camera "
-                        "send a key frame every second, or more bandwidth"
-                    )
-        except (av.FFmpegError, ValueError) as error:
-            raise InputError(f"{self.name}: broke off, or sends nothing more ({_reason(error)})") from None
-        raise InputError(f"{self.name}: broke off, or sends nothing more")
+        return av.open(
+            BytesIO(self._description or self._look()),
+            "r",
+            format="sdp",
+            timeout=types.TIMEOUT_S,
+            options=_OPTIONS,
+        )
 
     def _look(self) -> bytes:
         """A description of what comes to the port."""
@@ -216,10 +171,3 @@ def _describe(host: str, port: int, payload_type: int, coding: str) -> bytes:
     if payload_type >= _DYNAMIC:
         lines.append(f"a=rtpmap:{payload_type} {coding}/90000")
     return "".join(f"{line}\r\n" for line in lines).encode("ascii")
-
-
-def _reason(error: Exception) -> str:
-    """FFmpeg's reason; one that was interrupted because nothing came gives another each time."""
-    return (
-        "timed out" if "Immediate exit" in str(error) else str(getattr(error, "strerror", None) or "a fault")
-    )

@@ -205,3 +205,12 @@ def test_pictures_of_both_hands_go_before_those_of_one(monkeypatch):
     counts = iter([1, 2, 1, 0, 1])
     shown = show_hands(Stream([_gloves(seed) for seed in range(5)]), None, 5.0)
     assert (shown.hands, len(shown.images)) == (2, 4)
+
+
+def test_a_file_that_is_no_profile_is_not_replaced(run, tmp_path):
+    video = tmp_path / "hands.mp4"
+    video.write_bytes(b"mine")
+    result = run("calibrate", video, "--out", video)
+    assert (result.status, len(result.err)) == (ExitStatus.USAGE, 1)
+    assert f"{video}: is no profile and would be replaced; name another file with --out" in result.err[0]
+    assert video.read_bytes() == b"mine"

@@ -145,6 +145,7 @@ def test_a_chapter_that_is_broken_costs_itself():
     with source, pytest.raises(InputError, match=r"^2 cut: ends early; and 1 more$"):
         frames.extend(source)
     assert [frame.index for frame in frames] == list(range(9))
+    assert [frame.gap for frame in frames if frame.gap] == [frames[6].gap] == ["3 missing: no such file"]
     assert [frame.time_s for frame in frames] == pytest.approx([number / 10 for number in range(9)])
     with pytest.raises(InputError, match="missing"):
         JoinedVideos(["1 missing", "2"], Chapter)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lightgesture.errors import ExitStatus, InputError
-from lightgesture.sources import open_source
+from lightgesture.sources import SourceOptions, open_source
 from lightgesture.sources.clock import RecordingClock, creation_time
 from lightgesture.sources.conversion import Converter
 from lightgesture.sources.decoding import StreamDecoder
@@ -20,7 +20,7 @@ from .conftest import RATE, noise
 
 
 def read(path, **options):
-    with open_source(path, **options) as source:
+    with open_source(path, SourceOptions(**options)) as source:
         return list(source)
 
 

@@ -287,7 +287,7 @@ class Search:
         base = self._base % ROWS
         if self._times[base] >= self._cleared:
             gains = window[self._idle_columns]
-            for place in np.flatnonzero(gains > self._least).tolist():
+            for place in (gains > self._least).nonzero()[0].tolist():
                 column = int(self._idle_columns[place])
                 if column != self.spent and not (self.is_wary and column in self._inside):
                     score = self._passed(self._free_row) + gains[place] - COST - SHORT_COST
@@ -297,11 +297,11 @@ class Search:
         entered = self._passed(self._best_row) - (COST + SHORT_COST)
         floor = self.free - BEAM
         gains = window[self._inside_columns]
-        likely = np.flatnonzero(gains > max(self._least, floor - float(entered.max())))
+        likely = (gains > max(self._least, floor - float(entered.max()))).nonzero()[0]
         if not len(likely):
             return
         scores = gains[likely, None] + entered
-        for place, slot in np.argwhere(scores > floor).tolist():
+        for place, slot in zip(*map(list, (scores > floor).nonzero()), strict=True):
             reading = self.readings[slot]
             column = int(self._inside_columns[likely[place]])
             if reading is not None and (self._column[slot] != column or self._is_released(column)):
@@ -422,7 +422,7 @@ class Search:
     def _prune(self) -> None:
         """Give up what is far behind, and find what leads."""
         far = self.free - BEAM
-        for slot in np.flatnonzero((self.best < far) & (self._text >= 0)).tolist():
+        for slot in ((self.best < far) & (self._text >= 0)).nonzero()[0].tolist():
             self._drop(slot)
         self.lead = int(self.best.argmax()) if self._slots else None
 

@@ -41,6 +41,7 @@ def test_every_option_may_stand_in_the_file(config):
     path = config(
         'model = "/m.npz"\nselector = "classical"\nprofile = "/p.json"\n'
         'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
+        'rule = "sentence"\ncaution = 1.5\nthreshold = 0.6\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
         'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
@@ -56,6 +57,9 @@ def test_every_option_may_stand_in_the_file(config):
         "grammar": "/g.toml",
         "hold": 9,
         "hold_seconds": None,
+        "rule": "sentence",
+        "caution": 1.5,
+        "threshold": 0.6,
         "mirrored": True,
         "fps": 12.5,
         "as_json": True,

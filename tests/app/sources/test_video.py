@@ -1,5 +1,6 @@
 """Video files as cameras, phones and capture cards write them, whole and broken."""
 
+import json
 import os
 import threading
 from contextlib import suppress
@@ -250,6 +251,16 @@ def test_when_it_was_taken(write_video, suffix):
     path = write_video(f"a.{suffix}", noise(3), metadata={"creation_time": "2026-05-04T10:20:30Z"})
     with open_source(path) as source:
         assert source.start_utc == datetime(2026, 5, 4, 10, 20, 30, tzinfo=UTC)
+
+
+def test_records_have_the_time_of_day(write_video, run):
+    path = write_video("a.mp4", noise(4), metadata={"creation_time": "2026-05-04T10:20:30Z"})
+    records = [json.loads(line) for line in run("decode", path, "--json", "--frames").out]
+    assert [record["utc"] for record in records[:2]] == [
+        "2026-05-04T10:20:30.000Z",
+        "2026-05-04T10:20:30.033Z",
+    ]
+    assert records[-1]["utc"] == "2026-05-04T10:20:30.100Z"
 
 
 @pytest.mark.parametrize(

@@ -125,7 +125,7 @@ class DecodeSettings(BaseModel):
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
     fps: float = _option(
         DEFAULT_FPS,
-        f"frames a second of folders of frames; videos have their own time (default: {DEFAULT_FPS:g})",
+        f"frames a second of what has no clock: folders, bare streams of H.264 or JPEG (default: {DEFAULT_FPS:g})",
         "F",
         only=(DECODE, CALIBRATE),
         gt=0,

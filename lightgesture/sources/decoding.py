@@ -22,6 +22,15 @@ ONLY_DECODING_ORDER: Final = ("avi",)
 """FFmpeg's names of containers that have no stamps for showing, which differ from those for decoding where a codec
 reorders frames."""
 
+CHUNK_HEAD_BYTES: Final = 8
+"""Of AVI, before the content of a frame."""
+
+REORDERED: Final = 16
+"""Most frames that a codec keeps back to show them in another order."""
+
+ONE_FRAME_A_PACKET: Final = ("hevc",)
+"""Codecs that drop frames without an error where others are lost; each of their packets is a frame."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
@@ -52,6 +61,15 @@ class StreamDecoder:
         self._in_filter: deque[int] = deque()
         self._lacks_order = container.format.name in ONLY_DECODING_ORDER
         self._stamps: list[int] = []
+        self._index: dict[int, int] = {}
+        if self._lacks_order:
+            # Chunks are counted as they are read, so that a damaged place would shift all times after it.
+            self._index = {entry.pos + CHUNK_HEAD_BYTES: entry.timestamp for entry in stream.index_entries}
+        self._owed: set[int] = set()
+        self._sent = 0
+        self._is_counted = stream.codec_context.name in ONE_FRAME_A_PACKET
+        if self._is_counted:
+            stream.codec_context.copy_opaque = True
         self._undecoded = self._held_back = 0
         self.objection: str | None = None
         self.unshown = 0
@@ -68,7 +86,7 @@ class StreamDecoder:
         av.FFmpegError: the container cannot be read on, by more than damage.
         """
         for packet in self._packets():
-            for frame in self._decode(packet):
+            for frame in self.decode(packet):
                 yield from self._show(frame)
             yield None
         for done in self._deinterlacer.flush():
@@ -92,12 +110,17 @@ class StreamDecoder:
                     break
         yield None
 
-    def _decode(self, packet: "Packet[VideoStream] | None") -> list["VideoFrame"]:
+    def decode(self, packet: "Packet[VideoStream] | None") -> list["VideoFrame"]:
+        """The frames that a packet completes; None: the end. What the decoder refuses is counted."""
         import av
 
         decoder = self._stream.codec_context
         if self._lacks_order and packet is not None and packet.dts is not None:
-            heapq.heappush(self._stamps, packet.dts)
+            heapq.heappush(self._stamps, self._index.get(packet.pos or 0, packet.dts))
+        if self._is_counted and packet is not None:
+            packet.opaque = self._sent
+            self._owed.add(self._sent)
+            self._sent += 1
         try:
             return decoder.decode(packet)
         except av.error.EOFError:
@@ -106,6 +129,7 @@ class StreamDecoder:
             if packet is not None:
                 self._undecoded += 1
                 self._next_stamp()
+                self._owed.discard(self._sent - 1)
         return []
 
     def _show(self, frame: "VideoFrame") -> Iterator[Picture]:
@@ -113,6 +137,8 @@ class StreamDecoder:
             frame.time_base = self._stream.time_base  # which those that come last lack
         if self._lacks_order:
             frame.pts = self._next_stamp()
+        if self._is_counted:
+            self._undecoded += self._count_missing(frame)
         if frame.is_corrupt:
             self._undecoded += 1
             return
@@ -131,6 +157,16 @@ class StreamDecoder:
             return
         self._held_back = 0
         yield Picture(image, frame.time, lost)
+
+    def _count_missing(self, frame: "VideoFrame") -> int:
+        """How many packets before that of the frame have become none, and are too far back to become one."""
+        place = frame.opaque
+        if not isinstance(place, int):
+            return 0
+        self._owed.discard(place)
+        missing = {owed for owed in self._owed if owed < place - REORDERED}
+        self._owed -= missing
+        return len(missing)
 
     def _next_stamp(self) -> int | None:
         """The earliest time that no frame has had, of a container that tells only when each is to be decoded."""

@@ -1,5 +1,6 @@
 """A video file, read from its first frame to its last."""
 
+import multiprocessing
 import os
 import re
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from lightgesture.console import say
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.clock import RecordingClock, creation_time
-from lightgesture.sources.decoding import Picture, StreamDecoder
+from lightgesture.sources.decoding import REORDERED, Picture, StreamDecoder
 from lightgesture.sources.file_size import is_cut_off
 from lightgesture.sources.pictures import is_picture_name
 from lightgesture.sources.types import Source
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 
 DAMAGE_S: Final = 0.2
 """Seconds in which frames were lost that are told as a gap: less than half of a hold hides no sign."""
+
+USUAL_STEPS: Final = 1.5
+"""Times that between two frames which is longer than usual, near a lost one."""
 
 SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
@@ -83,6 +87,7 @@ class VideoFile(Source):
         self._decoder = StreamDecoder(container, stream, lambda text: say(f"{self.name}: {text}"))
         self._pictures = self._decoder.pictures()
         self._has_clock, self._lost = has_clock, 0
+        self._lost_at: int | None = None
         self._next = self._read(None)
         if self._next is None:
             raise InputError(f"{self.name}: {self._why_nothing()}")
@@ -117,14 +122,25 @@ class VideoFile(Source):
         stamp_s = picture.stamp_s if self._has_clock else index * self._period_s
         time_s = self._clock.read(stamp_s, index - before)
         self._lost += picture.lost
+        if picture.lost:
+            self._lost_at = index
         gap = None
-        if last is not None and self._clock.jump_s:
-            gap = f"the time stamps jump back by {self._clock.jump_s:g} s"
-        elif last is not None and last.image.shape != picture.image.shape:
-            gap = f"the picture changes from {_size(last)} to {_size(picture)}"
-        elif last is not None and picture.lost and time_s - last.time_s >= DAMAGE_S:
-            gap = f"{picture.lost} frames from {last.time_s:.2f} to {time_s:.2f} s are damaged"
+        if last is not None:
+            gap = self._find_gap(picture, last, index, time_s)
         return Frame(picture.image, index, time_s, gap)
+
+    def _find_gap(self, picture: Picture, last: Frame, index: int, time_s: float) -> str | None:
+        if self._clock.jump_s:
+            return f"the time stamps jump back by {self._clock.jump_s:g} s"
+        if last.image.shape != picture.image.shape:
+            return f"the picture changes from {_size(last)} to {_size(picture)}"
+        # A frame that was kept back to be shown later may come between the error and the hole.
+        is_damaged = self._lost_at is not None and index - self._lost_at <= REORDERED
+        if is_damaged and time_s - last.time_s >= max(DAMAGE_S, USUAL_STEPS * self._period_s):
+            return f"damaged from {last.time_s:.2f} to {time_s:.2f} s"
+        if picture.lost and not self._has_clock:
+            return f"damaged before {time_s:.2f} s; without a clock how much is missing is not known"
+        return None
 
     def _check_end(self, last: Frame) -> None:
         lost, read = self._decoder.lost, last.index + 1
@@ -191,7 +207,10 @@ def _choose(container: "InputContainer", path: str) -> "VideoStream":
     for other in container.streams:
         if other.index != stream.index:
             other.discard = Discard.all
-    stream.codec_context.thread_type = "AUTO"
+    if multiprocessing.parent_process() is None:
+        stream.codec_context.thread_type = "AUTO"
+    else:  # one of several processes, a video each: threads would cost a third more in all
+        stream.codec_context.thread_count = 1
     return stream
 
 

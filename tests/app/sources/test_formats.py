@@ -181,6 +181,21 @@ def test_sound(tmp_path, run, row):
     check(run, target, delay_s=delay_s)
 
 
+def test_a_damaged_place(tmp_path, run):
+    path = tmp_path / "damaged.mp4"
+    ffmpeg("-i", SAMPLE, *H264.split(), "-pix_fmt", "yuv420p", "-bf", 0, "-movflags", "+faststart", path)
+    content = bytearray(path.read_bytes())
+    start = len(content) // 3
+    content[start : start + 60_000] = bytes(number * 7 & 255 for number in range(60_000))
+    path.write_bytes(content)
+    result = run("decode", path, "--json")
+    records = [json.loads(line) for line in result.out]
+    assert (result.status, instructions(result.out)) == (ExitStatus.OK, [])
+    assert [record["reason"] for record in records if record["type"] == "notice"][:1] == ["gap"]
+    assert next(record["reason"] for record in records if record["type"] == "rejected") == "timeout"
+    assert records[-1]["frames"] > 200
+
+
 def test_an_edit_list(tmp_path, run):
     target = tmp_path / "trimmed.mp4"
     ffmpeg("-ss", 0.3, "-i", whole(tmp_path), "-c", "copy", target)

@@ -77,3 +77,20 @@ def test_a_picture_is_given_as_soon_as_it_is_whole():
         assert child.stdout.readline() == f"{len(JPEG)}\n".encode()
         child.stdin.close()
         assert child.wait(10) == 0
+
+
+@pytest.mark.parametrize(
+    ("between", "is_gap"), [(bytes(20_000), False), (b"\r\n--frame\r\n" * 9, False), (b"\x47ts" * 9000, True)]
+)
+def test_something_else_between_two_pictures_is_a_gap(between, is_gap):
+    picture = cv2.imencode(".jpg", np.full((16, 16, 3), 90, np.uint8))[1].tobytes()
+    content = io.BytesIO(picture * 2 + between + picture * 2)
+    with StandardInput(SourceOptions(fps=10), content) as source:
+        frames = list(source)
+    assert [frame.time_s for frame in frames] == [0.0, 0.1, 0.2, 0.3]
+    assert [frame.gap for frame in frames] == [
+        None,
+        None,
+        "27000 bytes are no picture" if is_gap else None,
+        None,
+    ]

@@ -87,7 +87,7 @@ class Bag:
                 self.channels[channel] += 1
         if not self.channels:
             raise InputError(f"{self._name}: is no bag that can be read ({reason}); copy or record it again")
-        self.remark = f"has no index that can be read ({reason}); read from its start"
+        self.remark = f"is read from its start, for its index cannot be ({reason})"
 
     def _scan(self, topic: str, given: int) -> Iterator[Message]:
         for channel, recorded_ns, data in _scan_all(self._files()):

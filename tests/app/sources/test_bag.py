@@ -334,7 +334,7 @@ def test_bags_that_are_cut_off_are_read_as_far_as_they_go(make_bag, capsys):
             np.array_equal(frame.image, noise_image(image))
             for frame, image in zip(frames, IMAGES, strict=False)
         )
-    assert "has no index that can be read" in capsys.readouterr().err
+    assert "is read from its start, for its index cannot be" in capsys.readouterr().err
 
 
 def test_a_bag_whose_recorder_was_killed(make_bag, capsys):

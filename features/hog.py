@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,9 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Image
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float, Image
 
 RED_COMPENSATION: Final = 1.0
 """Share of the missing red that is given back, 0 to 1 (Ancuti's alpha)."""

@@ -12,9 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.net.network import Quantisation
-from lightgesture.features.types import Image
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float, Image
 
 EVENNESS: Final = 0.02
 """Added to a channel's deviation of square roots (0 to 1), so that the noise of a flat picture stays small."""

@@ -9,6 +9,12 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 """uint8 (height, width, 3), BGR."""
 
+Float = NDArray[np.float32]
+"""Numbers of any shape."""
+
+Contour = NDArray[np.int32]
+"""int32 (n, 2), a closed outline, x and y, pixel by pixel."""
+
 Box = tuple[int, int, int, int]
 """x, y, width, height in pixels of the source frame."""
 

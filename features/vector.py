@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from lightgesture.features.hog import HogSettings, hog, hog_length
 from lightgesture.features.outline.contours import ContourSettings, contour_length, contour_vectors
 from lightgesture.features.patch import PatchSettings
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float
 
 
 @dataclass(frozen=True, slots=True)

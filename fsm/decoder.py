@@ -14,7 +14,7 @@ from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.signs import Signs
 
 if TYPE_CHECKING:
-    from lightgesture.fsm.rules.search import Summary
+    from lightgesture.fsm.rules.readings import Summary
 
 
 class _Rule(Protocol):
@@ -91,7 +91,7 @@ class Decoder:
         settings = self.grammar.sentence.changed(hold_seconds, caution)
         self._reader = Reader(self.grammar, self._reporter, self._timeline)
         self._hold_seconds: float | None = settings.hold_seconds
-        self._rule: _Rule = SentenceRule(self.grammar, settings, self._reader, self._reporter)
+        self._rule: _Rule = SentenceRule(self.grammar, settings, self._reader, self._reporter, self._timeline)
 
     def _make_hold_rule(self, rule: Rule | None, hold: int | None, hold_seconds: float | None) -> None:
         settings = self.grammar.dwell

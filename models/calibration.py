@@ -3,12 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Float
 from lightgesture.models.classes import NONE
-
-Float = NDArray[np.float32]
 
 
 def softmax(scores: Float, temperature: float) -> Float:

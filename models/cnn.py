@@ -19,10 +19,8 @@ from lightgesture.features.net.runner import Backend, Network
 from lightgesture.features.outline.contours import ContourSettings, contour_vectors
 from lightgesture.features.patch import PatchSettings, cut_patches
 from lightgesture.features.standardise import patch_levels
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Float
 from lightgesture.models.calibration import none_where_small, softmax
-
-Float = NDArray[np.float32]
 
 PATCH: Final = "patch"
 CONTOUR: Final = "contour"

@@ -12,12 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.patch import cut_patches
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Float
 from lightgesture.features.vector import feature_vectors
 from lightgesture.models.calibration import none_where_small, softmax
 from lightgesture.models.svm_file import SvmModel
-
-Float = NDArray[np.float32]
 
 
 def radial_kernel(points: Float, centres: Float, gamma: float, squares: Float | None = None) -> Float:

@@ -13,11 +13,10 @@ from numpy.typing import NDArray
 from lightgesture.features.hog import HogSettings
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
+from lightgesture.features.types import Float
 from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.archive import check_kind, positive, settings_from
 from lightgesture.models.errors import ModelError
-
-Float = NDArray[np.float32]
 
 KIND: Final = "svm"
 FORMAT: Final = 2

@@ -1,6 +1,7 @@
 """What the documents name is there: links, programs, modules, commands and their options."""
 
 import argparse
+import ast
 import importlib
 import pkgutil
 import re
@@ -29,6 +30,7 @@ NAME = re.compile(r"\b(lightgesture(?:\.\w+)+)(?!\.\w)\b")
 FILE_ENDINGS = (".toml", ".service", ".json", ".lock")
 CODE = re.compile(r"^```.*?^```$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"(?:^|[`/ |])lightgesture (?!import\b)([a-z]\w*)([^`\n#|]*)", re.MULTILINE)
+PYTHON = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 OPTION = re.compile(r"(?<!\S)(--[a-z][a-z-]*)")
 
 
@@ -64,19 +66,32 @@ def anchors(document):
 
 
 @cache
-def options_of(command):
+def parser_of(command):
     parser = argparse.ArgumentParser()
     importlib.import_module(COMMANDS[command][0]).add_arguments(parser)
-    return frozenset(words_of(parser))
+    return parser
 
 
-def words_of(parser):
+def options_of(parser):
     """The options of a parser and of the parsers below it."""
     for action in parser._actions:
         yield from action.option_strings
         if isinstance(action, argparse._SubParsersAction):
             for child in action.choices.values():
-                yield from words_of(child)
+                yield from options_of(child)
+
+
+def unknown_words(command, rest):
+    """Of what stands behind a command: options that it lacks, and what it has no such target or action for."""
+    if command not in COMMANDS:
+        return [command]
+    parser, (first, *_) = parser_of(command), [*rest.split(), ""]
+    choices = [
+        choice for action in parser._actions if not action.option_strings for choice in action.choices or ()
+    ]
+    is_wrong = choices and first.isalpha() and first not in choices
+    options = set(options_of(parser))
+    return [first] * bool(is_wrong) + [word for word in OPTION.findall(rest) if word not in options]
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=named)
@@ -114,14 +129,15 @@ def test_programs_and_names_of_python_are_there(document):
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=named)
+def test_python_imports_what_is_there(document):
+    trees = map(ast.parse, PYTHON.findall(document.read_text(encoding="utf-8")))
+    imports = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    names = [f"{node.module}:{alias.name}" for node in imports for alias in node.names]
+    assert [name for name in names if not is_name(name)] == []
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=named)
 def test_commands_and_their_options_are_known(document):
-    unknown = []
-    for code in CODE.findall(document.read_text(encoding="utf-8")):
-        for command, rest in COMMAND.findall(code.replace("\\\n", " ")):
-            if command not in COMMANDS:
-                unknown.append(command)
-            else:
-                unknown += [
-                    f"{command} {word}" for word in OPTION.findall(rest) if word not in options_of(command)
-                ]
-    assert unknown == []
+    codes = [code.replace("\\\n", " ") for code in CODE.findall(document.read_text(encoding="utf-8"))]
+    used = [found for code in codes for found in COMMAND.findall(code)]
+    assert [word for command, rest in used for word in unknown_words(command, rest)] == []

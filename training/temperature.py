@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.types import Float
 from lightgesture.models.calibration import softmax
-
-Float = NDArray[np.float32]
 
 
 def fit_temperature(scores: Float, truth: NDArray[np.int64]) -> float:

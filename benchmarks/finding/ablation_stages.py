@@ -19,7 +19,6 @@ from lightgesture.features.find.bank import bank_distances, hand_proximity
 from lightgesture.features.find.candidates import APART_IOU, best_distinct, score_pairs
 from lightgesture.features.find.classical import describe_regions, other_extents, scored_candidates
 from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
-from lightgesture.features.find.locator import logistic
 from lightgesture.features.find.proposals import LEVELS, Proposals, propose
 from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.find.selector_file import (
@@ -31,6 +30,7 @@ from lightgesture.features.find.selector_file import (
 from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
+from lightgesture.features.net.runner import logistic
 from lightgesture.features.skin_map import redness, stretch
 from lightgesture.features.types import Box, Candidates, HandRegion
 from lightgesture.hands import Finder

@@ -19,8 +19,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-Contour = NDArray[np.int32]
-Float = NDArray[np.float32]
+from lightgesture.features.types import Contour, Float
 
 OTHER: Final = "other"
 """Name of the class of outlines that are no hands."""

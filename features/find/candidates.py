@@ -18,8 +18,8 @@ from lightgesture.features.find.locator import Peaks
 from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
+from lightgesture.features.types import Float
 
-Float = NDArray[np.float32]
 Rows = NDArray[np.float64]
 """float64 (n, 9), a candidate a row: box x, y, width, height in working pixels; score, its predicted IoU with a hand;
 strength, how clearly it stands out (the level of its threshold or the heat of its peak; only the difference between two

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.proposals import Proposals
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Float
 
 CELLS: Final = 6
 """Along each side of the widened box."""

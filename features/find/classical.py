@@ -9,7 +9,6 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
@@ -20,9 +19,7 @@ from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalPart
 from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
-from lightgesture.features.types import Box, Candidates, HandRegion
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Box, Candidates, Float, HandRegion
 
 COLUMNS: Final = cells.COLUMNS + BANK_NUMBERS
 """Numbers of one region."""

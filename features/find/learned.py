@@ -22,8 +22,9 @@ from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.standardise import Float, channel_tables
-from lightgesture.features.types import Box, Candidates, HandRegion
+from lightgesture.features.net.runner import logistic
+from lightgesture.features.standardise import channel_tables
+from lightgesture.features.types import Box, Candidates, Float, HandRegion
 
 INNER: Final = 0.5
 """Side of the middle of a box, over the box's, whose mean colour stands for the hand's."""
@@ -78,7 +79,7 @@ class LearnedSelector:
         scale = np.tile(np.array(colour.scale, np.float32), 2)
         predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
         refined = self._nets.refiner.process(colour, predicted, channel_tables(colour.picture))
-        scores = np.asarray(np.float32(HAND_IOU) * (1.0 / (1.0 + np.exp(-refined.hand))), np.float32)
+        scores = np.asarray(HAND_IOU * logistic(refined.hand), np.float32)
         overlap = pairwise_iou(refined.boxes, refined.boxes)
         kept = best_distinct(overlap, scores)
         apart = overlap[np.ix_(kept, kept)] <= APART_IOU

@@ -14,10 +14,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.net.runner import Network
-from lightgesture.features.types import Image
-
-Float = NDArray[np.float32]
+from lightgesture.features.net.runner import Network, logistic
+from lightgesture.features.types import Float, Image
 
 MULTIPLE: Final = 16
 """Height and width that the net sees are multiples of its coarsest grid; the rest is filled with the mean colour."""
@@ -76,11 +74,6 @@ def padded(values: NDArray[np.int8], fill: int) -> NDArray[np.int8]:
             cv2.copyMakeBorder(values, 0, down, 0, right, cv2.BORDER_CONSTANT, value=(fill,) * 3), np.int8
         )
     return values[None]
-
-
-def logistic(values: Float) -> Float:
-    """1 / (1 + exp(-x))."""
-    return np.asarray(1.0 / (1.0 + np.exp(-values)), np.float32)
 
 
 def _maxima(plane: Float, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Contour, Image
 
-Contour = NDArray[np.int32]
 Point = NDArray[np.float64]
 
 LEVELS: Final = 32

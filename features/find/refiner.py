@@ -16,8 +16,8 @@ from lightgesture.features.colour import ColourMap
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Network
 from lightgesture.features.patch import Square, cut_squares, squares_round
-from lightgesture.features.standardise import Float, luma_tables
-from lightgesture.features.types import Image
+from lightgesture.features.standardise import luma_tables
+from lightgesture.features.types import Float, Image
 
 INPUT, HAND, BOX = "windows", "hand", "box"
 """Tensors of the net: the logit of a hand; left, upper, right and lower edge of its box, from the window's centre in

@@ -17,6 +17,7 @@ from lightgesture.features.net.network import (
     infer_shapes,
 )
 from lightgesture.features.net.reference import NumpyRunner
+from lightgesture.features.types import Float
 
 Levels = NDArray[np.int8]
 Backend = Literal["auto", "litert", "numpy"]
@@ -31,9 +32,14 @@ def quantise(values: NDArray[np.floating], quantisation: Quantisation) -> NDArra
     return np.asarray(np.clip(levels, -128, 127), np.int8)
 
 
-def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> NDArray[np.float32]:
+def dequantise(levels: NDArray[np.int8], quantisation: Quantisation) -> Float:
     """What the integers stand for."""
     return (levels.astype(np.float32) - np.float32(quantisation.zero)) * np.float32(quantisation.scale)
+
+
+def logistic(logits: Float) -> Float:
+    """Probabilities of the logits that a net gives: 1 / (1 + exp(-x))."""
+    return np.asarray(1.0 / (1.0 + np.exp(-logits)), np.float32)
 
 
 class Runner(Protocol):
@@ -64,7 +70,7 @@ class Network:
         """The integer that stands for the value 0 of an input."""
         return self._network.quantisation[name].zero
 
-    def run(self, inputs: Mapping[str, Levels]) -> dict[str, NDArray[np.float32]]:
+    def run(self, inputs: Mapping[str, Levels]) -> dict[str, Float]:
         """Integers (n, h, w, channels) for each input -> values, float32, of each output."""
         outputs = self._runner.run(inputs)
         return {

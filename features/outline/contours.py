@@ -13,9 +13,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Float = NDArray[np.float32]
+from lightgesture.features.types import Contour, Float
+
 Mask = NDArray[np.uint8]
-Contour = NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True)

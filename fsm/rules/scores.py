@@ -53,6 +53,8 @@ class SignScores:
         self._pairs = len(grammar.tokens) ** 2
         self.size = self._pairs + len(self.words)
         self._cards = {word: self._pairs + place for place, word in enumerate(self.words)}
+        self._least = np.full(self.size, 2 * _LEAST_SCORE)
+        self._half = self._least / 2
         self._hidden = [_HIDDEN_SCORE] * len(grammar.tokens)
         self._last: list[tuple[Sign | None, list[float]]] = [(None, self._hidden), (None, self._hidden)]
 
@@ -74,7 +76,7 @@ class SignScores:
 
         A card's score stands for two hands that agree.
         """
-        scores = np.full(self.size, 2 * _LEAST_SCORE)
+        scores = self._least.copy()
         if signs.left.is_word or signs.right.is_word:
             shown = signs.shown
             if shown is not None and shown[0] in self._cards:
@@ -83,11 +85,16 @@ class SignScores:
         if not (signs.left.seen or signs.right.seen):
             scores.fill(2 * _HIDDEN_SCORE)
             return scores, scores / 2
-        left, right = np.array(self._hand(0, signs.left)), self._hand(1, signs.right)
-        scores[: self._pairs] = np.add.outer(left, right).ravel()
-        of_left = np.full(self.size, _LEAST_SCORE)
-        of_left[: self._pairs] = np.repeat(left, len(right))
+        left = np.array(self._hand(0, signs.left)).repeat(len(self._tokens))
+        of_left = self._half.copy()
+        of_left[: self._pairs] = left
+        scores[: self._pairs] = left
+        self._square(scores)[...] += self._hand(1, signs.right)
         return scores, of_left
+
+    def _square(self, scores: Scores) -> Scores:
+        """The scores of the pairs as they lie, (left tokens, right tokens)."""
+        return scores[: self._pairs].reshape(len(self._tokens), -1)
 
     def _hand(self, hand: int, sign: Sign) -> list[float]:
         """The scores of the tokens of one hand; those of the same sign as in the last frame are kept."""
@@ -107,12 +114,13 @@ class SignScores:
 
     def _of_probabilities(self, probabilities: Mapping[str, float]) -> list[float]:
         """What is no number, or missing, counts as LEAST; more than one in all is brought down to one."""
-        chances = [probabilities.get(token, 0.0) for token in self._tokens]
+        get = probabilities.get
+        chances = [get(token, 0.0) for token in self._tokens]
         total = sum(chances)
         if total > 1.0 + SLACK:
             finite = [chance if 0.0 < chance < math.inf else 0.0 for chance in chances]
             chances = [chance / sum(finite) for chance in finite] if any(finite) else finite
-        return [_score(chance) for chance in chances]
+        return [math.log(chance) if LEAST < chance < 1.0 else _score(chance) for chance in chances]
 
     def _of_token(self, token: str, confidence: float) -> list[float]:
         """One token and how sure it is; the others share the rest."""

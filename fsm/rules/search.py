@@ -10,17 +10,18 @@ what was shown (utterance verification, as Rose and Paul, ICASSP 1990).
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lightgesture.fsm.language.forms import is_digit, spell
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.rules.dwell import Hold
+from lightgesture.fsm.rules.readings import Reading, Spoken, Summary
 from lightgesture.fsm.rules.scores import GAP_SCORE, RATE, SignScores
+from lightgesture.fsm.rules.windows import NEVER, ROWS, Floats, Windows
 from lightgesture.fsm.signs import Signs
 
 COST: Final = 0.5
@@ -36,14 +37,6 @@ JOIN_COST: Final = 3.0
 """What a digit costs besides that follows another one without the joining word, once a sentence: hands that leave a
 digit pass through others. Nothing where the language has no joining word."""
 
-PASSAGE_S: Final = 0.1
-"""Least seconds of the passage from one sign to the next: a sign that changes its mind for a moment is no second
-word."""
-
-RELEASE_SCORE: Final = 1.0
-"""How much less likely than another sign or a gap, as a logarithm, a sign must be on average in the passage if it
-comes again."""
-
 BEAM: Final = 12.0
 """How far behind the free loop a reading may be before it is given up, in units of score."""
 
@@ -55,69 +48,6 @@ MOST_TEXTS: Final = 1000
 
 LIKELY: Final = 0.04
 """Geometric mean probability of a sign over the least length, 0 to 1, below which no word begins with it."""
-
-ROWS: Final = 160
-"""Frames that are remembered."""
-
-SPACING_S: Final = 0.008
-"""Least seconds between two of them: a faster camera's frames share one, so that ROWS is enough."""
-
-NEVER: Final = -1e18
-"""A score that nothing comes back from, and that arithmetic stays finite with."""
-
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Spoken:
-    """A word of a reading: when its sign began, and how well it was seen.
-
-    sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1;
-    of the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when
-    the word began. fine: what the word cost for its place alone.
-    """
-
-    word: str
-    column: int
-    frame: int
-    time_s: float
-    behind: float
-    fine: float
-    sure: float = 0.0
-
-
-@dataclass(slots=True)
-class Reading:
-    """A hypothesis. began: when its first word did, seconds of the search. touched: when the last one entered.
-
-    state: of the grammar's table; before: the state that the last word led from. asked: words of which the diver was
-    asked to show the last sign again, so that they replace it.
-    """
-
-    spoken: tuple[Spoken, ...]
-    state: int
-    before: int
-    began: float
-    touched: float
-    text: int
-    words: tuple[str, ...]
-    asked: frozenset[str] = frozenset()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Summary:
-    """What a reading said, for those who ask why.
-
-    words: each with how well its sign was seen. behind: how far it was behind the free loop, in units of score.
-    longest_s: seconds that it passed over with both hands in view. misfit: how far it fell behind within one word,
-    `misfit_at`.
-    """
-
-    words: tuple[tuple[str, float], ...]
-    behind: float
-    longest_s: float
-    misfit: float
-    misfit_at: str
 
 
 class Search:
@@ -135,9 +65,7 @@ class Search:
         self._join = grammar.vocabulary.join
         self.hold_s = hold_s
         self.scores = SignScores(grammar)
-        self._span = hold_s * RATE
-        self._least = 2 * self._span * math.log(LIKELY)
-        self._spacing = max(SPACING_S, (hold_s + PASSAGE_S) * 1.5 / ROWS)
+        self._least = 2 * hold_s * RATE * math.log(LIKELY)
         self._idle = self._columns(grammar.idle_words, set(grammar.table.transitions[0]))
         inside = {word for row in grammar.table.transitions[1:] for word in row}
         self._inside = self._columns({**grammar.sentence_words}, inside)
@@ -158,23 +86,12 @@ class Search:
 
     def reset(self) -> None:
         """As at the start of a stream."""
-        size = self.scores.size
-        self.now = 0.0
-        self._count = 0
-        self._base = self._earlier = -1
-        self._broken = 0
-        self._times = [0.0] * ROWS
-        self._stamps = [(0, 0.0)] * ROWS
-        self._row, self._left_row = np.zeros((ROWS, size)), np.zeros((ROWS, size))
-        self._sum, self._left_sum, self._gap_sum = np.zeros(size), np.zeros(size), 0.0
-        self._gap_row, self._top_row, self._free_row = np.zeros(ROWS), np.zeros(ROWS), np.zeros(ROWS)
-        self._top_sum = 0.0
-        self._free_signs, self._free_gap = np.full(size, NEVER), 0.0
+        self.windows = Windows(self.scores.size, self.hold_s)
+        self._free_row = [0.0] * ROWS
+        self._free_signs, self._free_gap = np.full(self.scores.size, NEVER), 0.0
         self.free = 0.0
         self.is_wary = False
         self.spent: int | None = None
-        self.window: Floats | None = None
-        self.weaker = np.full(size, NEVER)
         self._best_row, self._longest_row = np.full((ROWS, MOST), NEVER), np.zeros((ROWS, MOST))
         self.clear()
 
@@ -189,79 +106,44 @@ class Search:
         self.sure = np.full(MOST, NEVER)
         self.bridged, self.longest, self.credit = np.zeros(MOST), np.zeros(MOST), np.zeros(MOST)
         self._best_row.fill(NEVER)
-        self._cleared = self.now
+        self._cleared = self.windows.now
         self.lead: int | None = None
 
     # One frame
+
+    @property
+    def known_texts(self) -> int:
+        """Sentences that are told apart by a number; at most MOST_TEXTS and those of the readings."""
+        return len(self._texts)
 
     def step(self, signs: Signs, passed_s: float, in_view_s: float, frame: int, time_s: float) -> Floats:
         """Take in a frame, which stands for `passed_s` seconds; its scores. in_view_s: of them, those that count as
         passed over where nothing is read."""
         scores, of_left = self.scores.of(signs)
-        self.now += passed_s
         weight = passed_s * RATE
         add, gap_add = scores * weight, GAP_SCORE * weight
-        self._sum += add
-        self._left_sum += of_left * weight
-        self._gap_sum += gap_add
-        self._top_sum += max(float(add.max()), gap_add)
-        row = self._next_row(frame, time_s)
-        self._row[row], self._left_row[row] = self._sum, self._left_sum
-        self._gap_row[row], self._top_row[row] = self._gap_sum, self._top_sum
-        self._base = self._follow(self._base, self.now - self.hold_s)
-        self._earlier = self._follow(self._earlier, self.now - self.hold_s - PASSAGE_S)
-        self.window = None
-        if self._base >= self._broken:
-            base = self._base % ROWS
-            self.window = self._sum - self._row[base]
-            of_left = self._left_sum - self._left_row[base]
-            self.weaker = np.minimum(of_left, self.window - of_left)
+        windows = self.windows
+        windows.step(add, of_left * weight, gap_add, passed_s, (frame, time_s))
         self._step_free(add, gap_add)
-        self._free_row[row] = self.free
+        self._free_row[windows.row] = self.free
         if self._slots:
             self._step_readings(add, gap_add, passed_s, in_view_s)
-        self._best_row[row], self._longest_row[row] = self.best, self.longest
-        if self.window is not None:
-            self._extend(self.window)
+        self._best_row[windows.row], self._longest_row[windows.row] = self.best, self.longest
+        if windows.window is not None:
+            self._extend(windows.window)
         if self._slots:
             self._prune()
         return scores
-
-    def break_off(self) -> None:
-        """Nothing was looked at for a while: no sign goes on across it, from the next frame on."""
-        self._base = self._earlier = self._count - 1
-        self._broken = self._count
-
-    def _next_row(self, frame: int, time_s: float) -> int:
-        """The row of this frame: a new one, or the last again where they come too fast."""
-        if (
-            self._count < self._broken + 2
-            or self.now - self._times[(self._count - 2) % ROWS] >= self._spacing
-        ):
-            self._count += 1
-        row = (self._count - 1) % ROWS
-        self._times[row], self._stamps[row] = self.now, (frame, time_s)
-        return row
-
-    def _follow(self, place: int, time: float) -> int:
-        """The number of the last row not after `time`, from the one before; -1 where there is none yet."""
-        while place + 1 < self._count - 1 and self._times[(place + 1) % ROWS] <= time + 1e-3:
-            place += 1
-        return place
 
     def _step_free(self, add: Floats, gap_add: float) -> None:
         """The best of all signs in any order, each as long as a word at least."""
         self._free_gap = max(self._free_gap, float(self._free_signs.max())) + gap_add
         self._free_signs += add
-        if self.window is not None:
-            entered = self.window + (self._passed(self._free_row) - COST)
+        window = self.windows.window
+        if window is not None:
+            entered = window + (self.windows.passed(self._free_row) - COST)
             np.maximum(self._free_signs, entered, out=self._free_signs)
         self.free = max(self._free_gap, float(self._free_signs.max()))
-
-    def _passed(self, scores: Floats) -> Any:
-        """From their rows, the scores after a passage that ends where the window begins."""
-        base, earlier = self._base % ROWS, max(self._earlier, self._broken) % ROWS
-        return scores[earlier] + (self._gap_row[base] - self._gap_row[earlier])
 
     def _step_readings(self, add: Floats, gap_add: float, passed_s: float, in_view_s: float) -> None:
         """Every reading goes on: in its sign, or in the gap."""
@@ -273,8 +155,8 @@ class Search:
         self.held += add[column]
         self.held += back
         is_held = self.held >= self.gap
-        if self.window is not None:
-            np.maximum(self.sure, self.weaker[column], out=self.sure, where=is_held)
+        if self.windows.window is not None:
+            np.maximum(self.sure, self.windows.weaker[column], out=self.sure, where=is_held)
         self.bridged += in_view_s
         self.bridged[is_held] = 0.0
         np.maximum(self.longest, self.bridged, out=self.longest)
@@ -284,50 +166,44 @@ class Search:
 
     def _extend(self, window: Floats) -> None:
         """Signs that were likely for the least length become words of the readings that they fit."""
-        base = self._base % ROWS
-        if self._times[base] >= self._cleared:
+        windows = self.windows
+        if windows.start_s >= self._cleared:
             gains = window[self._idle_columns]
-            for place in np.flatnonzero(gains > self._least).tolist():
+            for place in (gains > self._least).nonzero()[0].tolist():
                 column = int(self._idle_columns[place])
                 if column != self.spent and not (self.is_wary and column in self._inside):
-                    score = self._passed(self._free_row) + gains[place] - COST - SHORT_COST
-                    self._open(column, float(score), base)
-        if not self._slots or self._earlier < self._broken:
+                    score = windows.passed(self._free_row) + gains[place] - COST - SHORT_COST
+                    self._open(column, float(score))
+        if not self._slots or not windows.has_passage:
             return
-        entered = self._passed(self._best_row) - (COST + SHORT_COST)
+        entered = windows.passed(self._best_row) - (COST + SHORT_COST)
         floor = self.free - BEAM
         gains = window[self._inside_columns]
-        likely = np.flatnonzero(gains > max(self._least, floor - float(entered.max())))
+        likely = (gains > max(self._least, floor - float(entered.max()))).nonzero()[0]
         if not len(likely):
             return
         scores = gains[likely, None] + entered
-        for place, slot in np.argwhere(scores > floor).tolist():
+        for place, slot in zip(*map(list, (scores > floor).nonzero()), strict=True):
             reading = self.readings[slot]
             column = int(self._inside_columns[likely[place]])
-            if reading is not None and (self._column[slot] != column or self._is_released(column)):
+            if reading is not None and (self._column[slot] != column or windows.is_released(column)):
                 self._continue(slot, reading, column, float(scores[place, slot]))
 
-    def _is_released(self, column: int) -> bool:
-        """Whether a sign was gone in the passage before the window, so that it may be the next one again."""
-        base, earlier = self._base % ROWS, self._earlier % ROWS
-        of_sign = self._row[base, column] - self._row[earlier, column]
-        of_top = self._top_row[base] - self._top_row[earlier]
-        return bool(of_top - of_sign >= RELEASE_SCORE * RATE * PASSAGE_S)
-
-    def _spoken(self, word: str, column: int, base: int, behind: float, fine: float = 0.0) -> Spoken:
-        """A word whose sign begins after the row `base`."""
-        frame, time_s = self._stamps[(base + 1) % ROWS]
+    def _spoken(self, word: str, column: int, behind: float, fine: float) -> Spoken:
+        """A word whose sign begins with the window."""
+        frame, time_s = self.windows.start_stamp
         return Spoken(word, column, frame, time_s, behind, fine)
 
-    def _open(self, column: int, score: float, base: int) -> None:
+    def _open(self, column: int, score: float) -> None:
         """A word opens a sentence, whatever was shown before."""
         word = self._idle[column][0]
         if not self._is_better((word,), column, score):
             return
-        spoken = (self._spoken(word, column, base, 0.0),)
+        windows = self.windows
+        spoken = (self._spoken(word, column, 0.0, 0.0),)
         state = self._grammar.table.transitions[0][word]
         text = self._text_number((word,))
-        self._enter(Reading(spoken, state, 0, self._times[base], self.now, text, (word,)), score, 0.0)
+        self._enter(Reading(spoken, state, 0, windows.start_s, windows.now, text, (word,)), score, 0.0)
 
     def _continue(self, slot: int, reading: Reading, column: int, score: float) -> None:
         """A word goes on with a reading, where the table has it, or replaces the last one that was asked for
@@ -343,16 +219,16 @@ class Search:
             words = (*(reading.words[:-1] if is_again else reading.words), word)
             if not self._is_better(words, column, score - fine):
                 continue
-            earlier = self._earlier % ROWS
+            earlier = self.windows.earlier
             behind = float(self._free_row[earlier] - self._best_row[earlier, slot])
             last = reading.spoken[-1]
             kept = replace(last, sure=self.certainty(slot))
             before_it = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
-            spoken = (*before_it, self._spoken(word, column, self._base % ROWS, behind, fine))
+            spoken = (*before_it, self._spoken(word, column, behind, fine))
             text = self._text_number(words)
             longest = float(self._longest_row[earlier, slot])
             asked = self._asked((words, column)) if not is_again else frozenset[str]()
-            new = Reading(spoken, target, before, reading.began, self.now, text, words, asked)
+            new = Reading(spoken, target, before, reading.began, self.windows.now, text, words, asked)
             if is_again and (slot_again := self._slots.get((words, column))) is not None:
                 self._drop(slot_again)  # what led to the sign that is replaced must not lead anywhere else
             self._enter(new, score - fine, longest)
@@ -400,7 +276,7 @@ class Search:
         self._text[slot], self._column[slot] = reading.text, column
         self.held[slot] = self.best[slot] = score
         self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, longest
-        self.sure[slot] = self.weaker[column]
+        self.sure[slot] = self.windows.weaker[column]
 
     def _free_slot(self, score: float) -> int | None:
         """A slot for a new reading, at need that of the worst one; None where all are better."""
@@ -422,7 +298,7 @@ class Search:
     def _prune(self) -> None:
         """Give up what is far behind, and find what leads."""
         far = self.free - BEAM
-        for slot in np.flatnonzero((self.best < far) & (self._text >= 0)).tolist():
+        for slot in ((self.best < far) & (self._text >= 0)).nonzero()[0].tolist():
             self._drop(slot)
         self.lead = int(self.best.argmax()) if self._slots else None
 
@@ -430,7 +306,7 @@ class Search:
 
     def certainty(self, slot: int) -> float:
         """How well the last sign of a reading was seen: `Spoken.sure` of its last word."""
-        return math.exp(self.sure[slot] / self._span)
+        return math.exp(self.sure[slot] / self.windows.span)
 
     def certainties(self, slot: int) -> list[float]:
         """The same of all its words."""
@@ -454,15 +330,6 @@ class Search:
         ]
         worst = max(range(len(steps)), key=steps.__getitem__)
         return steps[worst], worst
-
-    @property
-    def window_s(self) -> float:
-        """When the window began over which `window` adds up, seconds of the search."""
-        return self._times[self._base % ROWS]
-
-    def likelihood(self, column: int) -> float:
-        """Geometric mean probability of a sign over the window, 0 to 1."""
-        return math.exp(self.weaker[column] / self._span)
 
     def is_over(self, slot: int) -> bool:
         """Whether the last sign of a reading has gone."""
@@ -519,7 +386,7 @@ class Search:
 
     def hold(self, column: int, confidence: float) -> Hold:
         """A sign that was shown over the window."""
-        frame, time_s = self._stamps[(self._base + 1) % ROWS]
+        frame, time_s = self.windows.start_stamp
         return Hold(
             pair=self.scores.shown(column),
             frames=1,

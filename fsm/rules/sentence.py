@@ -11,36 +11,22 @@ is issued as soon as its end word was shown for the least length, if all of thes
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 from lightgesture.fsm.events import Certainty, Growth
 from lightgesture.fsm.language.forms import spell
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.language.settings import SentenceSettings
-from lightgesture.fsm.reader import Reader
-from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter
+from lightgesture.fsm.reader import CONFIRMING, Reader
+from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter, Timeline
+from lightgesture.fsm.rules.doubts import MARGIN, MISFIT, WEAK, Doubt, find_doubt
 from lightgesture.fsm.rules.dwell import Hold
-from lightgesture.fsm.rules.scores import GAP_SCORE
-from lightgesture.fsm.rules.search import PASSAGE_S, RELEASE_SCORE, Floats, Reading, Search, Summary
+from lightgesture.fsm.rules.readings import Reading, Summary
+from lightgesture.fsm.rules.search import Search
+from lightgesture.fsm.rules.steady import STEADY, SteadySign
+from lightgesture.fsm.rules.windows import Floats
 from lightgesture.fsm.sentence import Sentence
 from lightgesture.fsm.signs import Signs
-
-MARGIN: Final = 2.5
-"""How far the best rival text must be behind, in units of score, at caution 1."""
-
-WEAK: Final = 0.25
-"""Least geometric mean probability of a hand over the best window of each word, 0 to 1, at caution 1."""
-
-END: Final = 0.4
-"""The same of the end word, without which nothing is issued."""
-
-MISFIT: Final = 4.0
-"""How far a reading may fall behind the free loop within one word and the gap before it, in units of score, at
-caution 1."""
-
-PASSED_S: Final = 0.4
-"""Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
 
 LONGEST_STEP_S: Final = 0.25
 """Longest time between two frames, seconds: no sign goes on across more, for of what was not looked at nothing is
@@ -56,34 +42,26 @@ PATIENCE_S: Final = 0.6
 PAUSE_S: Final = 1.5
 """Seconds without a sign after which a sentence that was dropped on the way is over for the diver too."""
 
-STEADY: Final = 0.5
-"""Least geometric mean probability of a hand over the least length for a sign that counts by itself, such as a second
-GO."""
-
 SUMMARIES: Final = 5
 """Readings of a sentence that are kept for those who ask why."""
-
-KILL: Final = 0.3
-"""The same for the word to kill: to stop is better than to go on."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Doubt:
-    """Why a sentence is not issued: reason of the rejection, and where and what for the diver."""
-
-    reason: str
-    detail: str
 
 
 class SentenceRule:
     """Reads one stream; see the module."""
 
     def __init__(
-        self, grammar: Grammar, settings: SentenceSettings, reader: Reader, reporter: Reporter
+        self,
+        grammar: Grammar,
+        settings: SentenceSettings,
+        reader: Reader,
+        reporter: Reporter,
+        timeline: Timeline,
     ) -> None:
-        self._grammar, self._reader, self._reporter = grammar, reader, reporter
+        self._grammar, self._timeline = grammar, timeline
+        self._reader, self._reporter = reader, reporter
         self._caution = settings.caution
         self.search = Search(grammar, settings.hold_seconds)
+        self._steady = SteadySign(self.search)
         control = grammar.control
         self._control = {word for word in (control.kill, control.cancel) if word is not None}
         self._reset()
@@ -94,7 +72,8 @@ class SentenceRule:
         self._judged: tuple[Summary, ...] = ()
         self._told_s = 0.0
         self._is_told_sure = self._is_waiting = False
-        self._absent_s = self._steady_from = self._paused_s = 0.0
+        self._paused_s = 0.0
+        self._steady.reset()
         self._top, self._top_s = -1, 0.0
 
     def interrupt(self) -> None:
@@ -124,9 +103,10 @@ class SentenceRule:
         is_counted = in_view or signs.left.is_word or signs.right.is_word or self._grammar.dwell.count_hidden
         step_s = passed_s
         if passed_s > LONGEST_STEP_S:
-            search.break_off()
+            search.windows.break_off()
             step_s = 0.0
-        scores = search.step(signs, step_s, passed_s if is_counted else 0.0, self._reporter.frame, now_s)
+        stamp = self._reporter.frame, self._timeline.time_s
+        scores = search.step(signs, step_s, passed_s if is_counted else 0.0, *stamp)
         self._follow_top(scores, step_s)
         self._wait_for_pause(scores, passed_s)
         if not self._heed_steady_sign(scores, step_s):
@@ -142,8 +122,7 @@ class SentenceRule:
         self._judged = self.search.summaries(SUMMARIES)
         self.search.clear()
         self._told = ()
-        if self.search.window is not None:
-            self._spend(int(self.search.window.argmax()))
+        self._steady.spend_shown()
 
     def _wait_for_pause(self, scores: Floats, passed_s: float) -> None:
         """A diver who does not look signs on after a rejection: what follows is no new sentence before a pause."""
@@ -155,36 +134,23 @@ class SentenceRule:
 
     # Signs that count by themselves
 
-    def _spend(self, column: int) -> None:
-        """A sign was read: it must be gone before it counts again."""
-        self.search.spent, self._absent_s = column, 0.0
-        self._steady_from = self.search.now
-
     def _heed_steady_sign(self, scores: Floats, step_s: float) -> bool:
-        """Words of control, the second end word, and words that open nothing: they need no sentence around them."""
-        search, reader = self.search, self._reader
-        if self.search.spent is not None:
-            is_there = scores[self.search.spent] > max(float(scores.max()), GAP_SCORE) - RELEASE_SCORE
-            self._absent_s = 0.0 if is_there else self._absent_s + step_s
-            if self._absent_s >= PASSAGE_S:
-                self.search.spent = None
-        if search.window is None or search.window_s < self._steady_from:
+        """Words of control, the second end word, and words that open nothing; whether there was one."""
+        column = self._steady.process(scores, step_s)
+        if column is None:
             return False
-        column = int(search.window.argmax())
-        if column == self.search.spent:
-            return False
-        likelihood, shown = search.likelihood(column), search.scores.shown(column)
-        word = reader.word_of(shown)
-        is_control = word is not None and word in self._control
-        if likelihood < (KILL if is_control else STEADY):
-            return False
-        if not is_control and reader.state != "confirming":
-            return self._note(column, word)
-        hold = search.hold(column, likelihood)
-        self._spend(column)
+        reader, search = self._reader, self.search
+        likelihood = search.windows.likelihood(column)
+        word = reader.word_of(search.scores.shown(column))
+        if word not in self._control:
+            if likelihood < STEADY:
+                return False
+            if reader.state != CONFIRMING:
+                return self._note(column, word)
+        self._steady.spend(column)
         if word == self._grammar.control.cancel and reader.sentence is None:
             return False
-        reader.read(hold)
+        reader.read(search.hold(column, likelihood))
         if reader.sentence is None:
             self._close()
         return True
@@ -195,10 +161,10 @@ class SentenceRule:
         is_idle = self._reader.sentence is None and (lead is None or self.search.behind(lead) > MISFIT)
         if not is_idle or word is None or word in self._grammar.table.transitions[0]:
             return False
-        self._spend(column)
+        self._steady.spend(column)
         if word == self._grammar.end:
             self._is_waiting = False
-        self._reader.read(self.search.hold(column, self.search.likelihood(column)))
+        self._reader.read(self.search.hold(column, self.search.windows.likelihood(column)))
         return True
 
     # The sentence
@@ -206,7 +172,7 @@ class SentenceRule:
     def _heed_readings(self, now_s: float) -> None:
         """Tell what the leading reading has become, and conclude it when it is complete."""
         search, reader = self.search, self._reader
-        if reader.state == "confirming":
+        if reader.state == CONFIRMING:
             return
         lead = search.lead
         reading = None if lead is None else search.readings[lead]
@@ -254,7 +220,7 @@ class SentenceRule:
         for place in range(kept, len(agreed)):
             text = spell(agreed[: place + 1], self._grammar.vocabulary.join)
             self._reporter.word(self._hold(reading, place, certainties[place]), agreed[place], text)
-        self._told, self._told_s = agreed, self.search.now
+        self._told, self._told_s = agreed, self.search.windows.now
         self._is_told_sure = certainties[0] > STEADY or len(agreed) > 1
         self._show()
 
@@ -295,10 +261,13 @@ class SentenceRule:
     def _judge(self, lead: int, reading: Reading, now_s: float) -> None:
         """A complete sentence: issue it, wait a little for a doubt to pass, or reject it."""
         search = self.search
-        waited = search.now - reading.touched
+        waited = search.windows.now - reading.touched
         if waited < SETTLE_S and not search.is_over(lead):
             return
-        doubt = self._doubt(lead, reading)
+        if self._is_another(reading):
+            doubt: Doubt | None = self._inside(reading.words[0])
+        else:
+            doubt = find_doubt(search, lead, reading, self._caution)
         if doubt is not None:
             if waited > PATIENCE_S and (search.is_over(lead) or waited > 2 * PATIENCE_S + search.hold_s):
                 self._reject(doubt, reading)
@@ -320,31 +289,6 @@ class SentenceRule:
         self._close()
 
     # Doubts
-
-    def _doubt(self, lead: int, reading: Reading) -> Doubt | None:
-        """Why a complete reading may not be issued; None: it may."""
-        search, caution = self.search, self._caution
-        if self._is_another(reading):
-            return self._inside(reading.words[0])
-        if search.margin(lead) < MARGIN * caution:
-            rival = search.rival(lead)
-            return Doubt(reason="ambiguous", detail=f"it could as well be {rival}; sign it again")
-        certainties = search.certainties(lead)
-        weakest = min(range(len(certainties)), key=certainties.__getitem__)
-        if certainties[-1] < min(END * caution, 1.0 - END):
-            return Doubt(reason="weak_sign", detail=f"{reading.words[-1]} was not seen well; sign it again")
-        if certainties[weakest] < WEAK * caution:
-            return Doubt(
-                reason="weak_sign", detail=f"{reading.words[weakest]} was not seen well; sign it again"
-            )
-        if search.longest[lead] > PASSED_S / caution:
-            detail = f"{search.longest[lead]:.1f} s between two signs were not read; sign it again"
-            return Doubt(reason="passed_over", detail=detail)
-        behind, place = search.misfit(lead)
-        if behind > MISFIT / caution:
-            detail = f"{reading.words[place]} is not what was shown; sign it again"
-            return Doubt(reason="does_not_fit", detail=detail)
-        return None
 
     def _is_another(self, reading: Reading) -> bool:
         """Whether a reading is of a sentence that began after the one that was told, which is not over."""

@@ -80,13 +80,6 @@ class DecodeSettings(BaseModel):
     grammar: str | None = _option(
         None, "grammar file (default: the bundled one)", "FILE", kind="path", only=STREAMS
     )
-    rule: Literal["frames", "seconds", "evidence", "sentence"] | None = _option(
-        None,
-        "when signs count: each by itself, after a hold in frames or seconds or by evidence, or by the whole sentence"
-        " (default: the grammar's own)",
-        "frames|seconds|evidence|sentence",
-        only=STREAMS,
-    )
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
@@ -103,6 +96,13 @@ class DecodeSettings(BaseModel):
         ge=MIN_HOLD_S,
         le=MAX_HOLD_S,
         allow_inf_nan=False,
+    )
+    rule: Literal["frames", "seconds", "evidence", "sentence"] | None = _option(
+        None,
+        "when signs count: each by itself, after a hold in frames or seconds or by evidence, or by the whole sentence"
+        " (default: the grammar's own)",
+        "frames|seconds|evidence|sentence",
+        only=STREAMS,
     )
     caution: float | None = _option(
         None,

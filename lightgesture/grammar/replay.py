@@ -44,7 +44,7 @@ def _readings(decoder: Decoder) -> Iterator[str]:
 
 
 def _frames(path: str) -> Iterator[dict[str, Any]]:
-    """The frame records of a file that have probabilities or no hands, where it has any of the former."""
+    """The frame records of a file whose hands all have probabilities."""
     try:
         with open(path, encoding="utf-8") as stream:
             for number, line in enumerate(stream, 1):

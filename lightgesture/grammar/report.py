@@ -54,8 +54,9 @@ def show(grammar: Grammar) -> list[str]:
     for number, parameter in sorted(grammar.parameters.items()):
         details = [f"{key} {value}" for key, value in asdict(parameter).items() if value is not None]
         lines.append(f"  {number}  {', '.join([parameter.name, *details[1:]])}")
-    settings = {**asdict(grammar.limits), **asdict(grammar.dwell), **asdict(grammar.control)}
-    settings |= {f"sentence {name}": value for name, value in asdict(grammar.sentence).items()}
+    settings = {**asdict(grammar.limits), **asdict(grammar.dwell)}
+    settings |= {f"sentence.{name}": value for name, value in asdict(grammar.sentence).items()}
+    settings |= asdict(grammar.control)
     settings["confirm"] = ", ".join(sorted(grammar.control.confirm)) or None
     lines += [
         "",

@@ -100,12 +100,12 @@ class LiveLoop:
             wait_s = min(POLL_S, max(0.0, beat_s - self._clock()))
             snapshot = self._mailbox.take(wait_s)
             if snapshot is not None:
-                self._take_in(snapshot)
+                self.take_in(snapshot)
             elif self._mailbox.is_closed:
                 break
             now_s = self._clock()
             if now_s >= beat_s:
-                self._beat(now_s)
+                self.beat(now_s)
                 # After a stall one beat makes up for those that were missed.
                 beat_s = max(beat_s + self._heartbeat_s, now_s)
         self._publish(None, self._finish())
@@ -124,7 +124,8 @@ class LiveLoop:
     def _is_unheard(self) -> bool:
         return not self._listeners and bool(self._outlets) and all(outlet.is_gone for outlet in self._outlets)
 
-    def _take_in(self, snapshot: Snapshot) -> None:
+    def take_in(self, snapshot: Snapshot) -> None:
+        """Decode a picture and publish what comes of it; one that cannot be read is passed over."""
         start = time.perf_counter()
         try:
             image = to_image(snapshot.content)
@@ -146,7 +147,8 @@ class LiveLoop:
         self._seen_s, self._is_silent = snapshot.time_s, False
         self._publish(image, records)
 
-    def _beat(self, now_s: float) -> None:
+    def beat(self, now_s: float) -> None:
+        """Publish a sign of life, at `now_s` seconds."""
         spent_ms = round(median(self._spent_ms), 3) if self._spent_ms else 0.0
         self._spent_ms.clear()
         beat = HeartbeatRecord(

@@ -74,6 +74,9 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
     run("decode", make_folder("frames", 2), "--hold-seconds", 0.4)
     assert fake.made[-1].options["hold_seconds"] == 0.4
+    run("decode", make_folder("frames", 2), "--rule", "sentence", "--caution", 2, "--threshold", 0.5)
+    options = fake.made[-1].options
+    assert (options["rule"], options["caution"], options["threshold"]) == ("sentence", 2.0, 0.5)
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {
         "model": "cnn",

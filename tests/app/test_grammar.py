@@ -1,5 +1,6 @@
-"""`lightgesture grammar`: check, show, draw and explain."""
+"""`lightgesture grammar`: init, check, show, draw and explain."""
 
+import json
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -11,6 +12,7 @@ from lightgesture.errors import ExitStatus
 from lightgesture.fsm import load_grammar
 from lightgesture.grammar.drawing import lay_out
 from lightgesture.grammar.report import merge_words
+from lightgesture.records import FrameRecord, Hand
 
 BUNDLED = Path(load_grammar().file).read_text(encoding="utf-8")
 EXAMPLES = Path(__file__).parents[2] / "docs" / "grammars"
@@ -30,6 +32,23 @@ def write(tmp_path):
         return path
 
     return change
+
+
+class TestInit:
+    def test_what_is_written_is_sound_and_never_overwritten(self, run, tmp_path):
+        path = tmp_path / "my.toml"
+        assert run("grammar", "init", path).status == ExitStatus.OK
+        assert load_grammar(path).table == load_grammar().table
+        path.write_text("mine")
+        result = run("grammar", "init", path)
+        assert result.status == ExitStatus.USAGE
+        assert result.err == [f"lightgesture: {path}: is there already; name a new file"]
+        assert path.read_text() == "mine"
+
+    def test_a_place_that_cannot_be_written(self, run, tmp_path):
+        result = run("grammar", "init", tmp_path / "none" / "my.toml")
+        assert result.status == ExitStatus.USAGE
+        assert "cannot be written" in result.err[0]
 
 
 class TestCheck:
@@ -148,6 +167,71 @@ class TestExplain:
     def test_wrong_sequence(self, run, sequence, expected):
         result = run("grammar", "explain", sequence)
         assert (result.status, result.err) == (ExitStatus.USAGE, [f"lightgesture: {expected}"])
+
+
+class TestExplainRecords:
+    PAIRS = ("0,0", "5,5", "ok,5", "ok,ok")
+
+    @pytest.fixture
+    def recorded(self, tmp_path):
+        """A function that records these pairs, held, with this chance of each token."""
+
+        def write(chance, probabilities=True):
+            lines, frame = [], 0
+            for pair in self.PAIRS:
+                for token in (pair, None):
+                    for _ in range(24 if token else 6):
+                        names = token.split(",") if token else ("none", "none")
+                        hands = [
+                            Hand(
+                                side=side,
+                                token=None if token is None else name,
+                                confidence=chance,
+                                box=(0, 0, 9, 9),
+                                track=1,
+                                reason=None,
+                                probabilities={name: chance},
+                            )
+                            for side, name in zip(("left", "right"), names, strict=True)
+                        ]
+                        lines.append(
+                            FrameRecord(
+                                source="a",
+                                frame=frame,
+                                time_s=frame / 30,
+                                hands=hands,
+                                probabilities=probabilities,
+                            )
+                        )
+                        frame += 1
+            path = tmp_path / "dive.jsonl"
+            path.write_text("\n".join(json.dumps(line.to_dict()) for line in lines))
+            return path
+
+        return write
+
+    def test_an_instruction_with_its_readings(self, run, recorded):
+        result = run("grammar", "explain", recorded(0.9))
+        assert result.status == ExitStatus.OK
+        assert [line for line in result.out if line.endswith("issued: STOP HOVER 5 GO (task)")]
+        assert [line for line in result.out if "STOP 0.90, HOVER 0.90, 5 0.90, GO 0.90" in line]
+
+    def test_why_a_sentence_was_lost(self, run, recorded):
+        out = run("grammar", "explain", recorded(0.21)).out
+        assert not [line for line in out if "issued" in line]
+
+    @pytest.mark.parametrize("text", ["", "{", '{"type": "frame"}', '{"type": "state"}'])
+    def test_what_is_no_recording(self, run, tmp_path, text):
+        path = tmp_path / "a.jsonl"
+        path.write_text(text)
+        result = run("grammar", "explain", path)
+        assert result.status == ExitStatus.USAGE
+        assert len(result.err) == 1
+
+    def test_records_without_probabilities_and_no_file(self, run, recorded, tmp_path):
+        result = run("grammar", "explain", recorded(0.9, probabilities=False))
+        assert "no frame record with probabilities; record some" in result.err[0]
+        assert "cannot be read" in run("grammar", "explain", tmp_path / "none.jsonl").err[0]
 
 
 class TestDraw:

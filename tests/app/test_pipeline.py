@@ -132,6 +132,37 @@ def test_the_clearest_extent_is_read():
     assert clearest(np.array(rows, np.float32), CLASSES) == 1
 
 
+def test_the_mean_of_the_extents_doubts_where_they_differ():
+    rows = [[0.1, 0.8, 0.1], [0.95, 0.03, 0.02]]
+    stage = ReadingStage(FakeClassifier(rows), ReadingSettings(extents="mean"))
+    (hand,) = stage.process(_noise(), [hand_of("left", (10, 10, 30, 60), (10, 10, 30, 40))])
+    assert (hand.token, hand.reason, hand.box) == (None, "low_confidence", (10, 10, 30, 40))
+    assert list(hand.probabilities.values()) == pytest.approx([0.525, 0.415, 0.06])
+
+
+def test_the_rule_sentence_is_told_the_mean_and_its_frame_records_tell_it_on():
+    with open_source(SAMPLE) as source:
+        frames = [frame for frame, _ in zip(source, range(24), strict=False)]
+    told = {}
+    for rule in ("sentence", "frames"):
+        pipeline = Pipeline(rule=rule)
+        records = [pipeline.process(frame.image, frame.time_s)[0].to_dict() for frame in frames]
+        told[rule] = [hand for record in records for hand in record["hands"]]
+    assert told["sentence"]
+    for hand in told["sentence"]:
+        assert all(0.005 <= chance <= 1.0 for chance in hand["probabilities"].values())
+    assert not any("probabilities" in hand for hand in told["frames"])
+
+
+def test_options_of_the_decoder_and_of_the_reader():
+    pipeline = Pipeline(rule="sentence", caution=2.0, hold_seconds=0.5, threshold=0.9)
+    assert (pipeline.decoder.rule, pipeline.decoder.hold_seconds) == ("sentence", 0.5)
+    other = pipeline.for_stream("other").decoder
+    assert (other.rule, other.hold_seconds) == ("sentence", 0.5)
+    with pytest.raises(ValueError, match="rule, caution: of no effect beside another decoder"):
+        Pipeline(decoder=other, rule="sentence", caution=2.0)
+
+
 @pytest.mark.parametrize(
     ("row", "at_edge", "crowded", "token", "reason"),
     [

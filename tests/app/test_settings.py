@@ -40,7 +40,8 @@ def test_command_line_goes_before_the_file(config):
 def test_every_option_may_stand_in_the_file(config):
     path = config(
         'model = "/m.npz"\nselector = "classical"\nprofile = "/p.json"\n'
-        'grammar = "/g.toml"\nrule = "frames"\nhold = 9\ncaution = 2.0\nthreshold = 0.8\nmirrored = true\n'
+        'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
+        'rule = "sentence"\ncaution = 1.5\nthreshold = 0.6\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
         'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
@@ -55,11 +56,11 @@ def test_every_option_may_stand_in_the_file(config):
         "selector": "classical",
         "profile": "/p.json",
         "grammar": "/g.toml",
-        "rule": "frames",
         "hold": 9,
         "hold_seconds": None,
-        "caution": 2.0,
-        "threshold": 0.8,
+        "rule": "sentence",
+        "caution": 1.5,
+        "threshold": 0.6,
         "mirrored": True,
         "fps": 12.5,
         "as_json": True,
@@ -111,7 +112,7 @@ def test_a_byte_order_mark_does_no_harm(config):
     ("text", "message"),
     [
         ("hodl = 3", "hodl: unknown key; did you mean 'hold'?"),
-        ("xyzzy = 3", "xyzzy: unknown key; use model, selector, profile, grammar, rule, hold"),
+        ("xyzzy = 3", "xyzzy: unknown key; use model, selector, profile, grammar, hold"),
         ("hold_seconds = 0", "hold_seconds: should be greater than or equal to 0.05, not 0"),
         ("hold = 3\nhold-seconds = 1", "hold and hold_seconds: exclude each other; give one of them"),
         ("[decode]\nhold = 3", "decode: unknown key"),

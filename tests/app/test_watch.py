@@ -108,14 +108,14 @@ def test_live_tells_a_stall_and_frames_that_show_nothing(fake):
     )
     times = [0.0, 0.1, 0.2, 9.0, *seconds(30, 10.0, 9.1)]
     for index, time_s in enumerate(times):
-        loop._take_in(Snapshot(BLACK if time_s > 9.0 else SEEN, index, time_s))
+        loop.take_in(Snapshot(BLACK if time_s > 9.0 else SEEN, index, time_s))
     notices = [record.detail for record in records if record.type == "notice" and record.reason == "gap"]
     assert notices == [
         "no frame from 0.20 to 9.00 s",
         "frames show nothing from 9.10 s on: all pixels are the same",
     ]
     assert pipeline.start_utc == moment
-    loop._beat(1.5)
+    loop.beat(1.5)
     assert records[-1].utc == "2026-05-04T00:00:01.500Z"
     box.close()
     loop.run(type("Never", (), {"is_set": lambda self: False})())

@@ -8,7 +8,10 @@ import pytest
 
 from lightgesture.fsm import UNSEEN, Decoder, Sign, Signs, load_grammar
 from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.reader import Reader
+from lightgesture.fsm.reporter import Reporter, Timeline
 from lightgesture.fsm.rules import search
+from lightgesture.fsm.rules.sentence import SentenceRule
 
 RATES = (10, 30, 60)
 UNREAD = Signs(Sign(None, 0.97, {"none": 0.97}), Sign(None, 0.97, {"none": 0.97}))
@@ -414,16 +417,17 @@ def test_frames_that_were_dropped_may_have_hidden_a_sign(diver):
 def test_memory_is_bounded_whatever_comes(grammar, rate):
     """An hour of one sign, held, and of random signs: no more readings, texts or rows than at the start."""
     rng = random.Random(1)
-    decoder = Decoder(grammar, rule="sentence")
-    inner = decoder._rule.search
+    reporter = Reporter(None, timeline := Timeline())
+    rule = SentenceRule(grammar, grammar.sentence, Reader(grammar, reporter, timeline), reporter, timeline)
     pair = ("0", "0")
     for frame in range(3000):
         if frame % 20 == 0:
             pair = rng.choice(list(grammar.idle_words))
-        decoder.step(Signs(likely(pair[0], 0.5), likely(pair[1], 0.5)), frame / rate)
-        assert len(inner._slots) <= search.MOST
-        assert sum(reading is not None for reading in inner.readings) == len(inner._slots)
-    assert len(inner._texts) <= search.MOST_TEXTS
+        rule.process(
+            Signs(likely(pair[0], 0.5), likely(pair[1], 0.5)), timeline.advance(frame / rate), 1 / rate
+        )
+        assert sum(reading is not None for reading in rule.search.readings) <= search.MOST
+    assert rule.search.known_texts <= search.MOST_TEXTS
 
 
 def test_a_sign_held_for_an_hour_is_one_word(grammar):

@@ -73,14 +73,18 @@ def test_other_tables_and_folders_are_refused(tmp_path: Path) -> None:
         read_rows(tmp_path / "a.png")
 
 
-@pytest.mark.parametrize("name", ["thumb up", "Größe", "up-down", "a" * 33, ""])
+@pytest.mark.parametrize("name", ["thumb up", "Größe", "up-down", "a" * 33])
 def test_a_class_that_no_grammar_could_name_is_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(UsageError, match=r"line 3: .* cannot be a token of a grammar; name the token"):
         read_rows(manifest(tmp_path, "a.png,1,,,,,,,,", f"b.png,{name},,,,,,,,"))
-    if name:
-        (tmp_path / "signs" / name).mkdir(parents=True)
-        with pytest.raises(UsageError, match=r"signs: .* cannot be a token of a grammar; name the folder"):
-            read_rows(tmp_path / "signs")
+    (tmp_path / "signs" / name).mkdir(parents=True)
+    with pytest.raises(UsageError, match=r"signs: .* cannot be a token of a grammar; name the folder"):
+        read_rows(tmp_path / "signs")
+
+
+def test_a_row_without_a_class_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"line 3: column token is empty"):
+        read_rows(manifest(tmp_path, "a.png,1,,,,,,,,", "b.png,,,,,,,,,"))
 
 
 @pytest.mark.parametrize(

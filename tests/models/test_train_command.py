@@ -91,7 +91,7 @@ def test_backgrounds_and_scenes_add_regions(folder: Path, tmp_path: Path) -> Non
     [
         (["--data", "nowhere.csv"], 1, "nowhere.csv: cannot be read"),
         (["--data", "{folder}", "--backgrounds", "nowhere"], 1, "nowhere: no such folder"),
-        (["--data", "{folder}", "--scenes", "nowhere.csv"], 1, "nowhere.csv: is no table"),
+        (["--data", "{folder}", "--scenes", "nowhere.csv"], 1, "nowhere.csv: cannot be read"),
         (["--data", "{folder}", "--out", "model.pickle"], 2, "ends in .npz"),
         (["--data", "{folder}", "--out", "nowhere/model.npz"], 2, "nowhere: no such folder"),
         (["--data", "{folder}", "--seed", "-1"], 2, "--seed"),

@@ -13,13 +13,13 @@ from torch.nn import functional
 
 from lightgesture.features.net.network import IntegerNetwork, Node, Shape
 from lightgesture.features.outline.contours import ContourSettings, contour_vectors
+from lightgesture.features.types import Float
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
 from lightgesture.training.nets.hand_samples import HandBatch, HandSamples, standardised
 from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, train_net
 from lightgesture.training.nets.quantise import quantise
 from lightgesture.training.nets.torch_network import TorchNetwork
 
-Float = NDArray[np.float32]
 STANDARD_RANGE = (-3.0, 3.0)
 """Of the standardised values of patches and outlines."""
 CALIBRATION = 12

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.standardise import EVENNESS, LARGEST
+from lightgesture.features.types import Float
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
 
-Float = NDArray[np.float32]
 Random = np.random.Generator
 
 _ROOTS = np.sqrt(np.arange(256, dtype=np.float32) / np.float32(255.0))

@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 
 from lightgesture.features.find.locator import STRIDE
 from lightgesture.features.standardise import channel_tables
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Float, Image
 from lightgesture.training.pictures.light import photometric
 from lightgesture.training.regions.trees import BoxedPicture
 
-Float = NDArray[np.float32]
 Random = np.random.Generator
 WIDTH, HEIGHT = 160, 120
 """Working picture, pixels."""

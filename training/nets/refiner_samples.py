@@ -14,11 +14,10 @@ from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.patch import Square
 from lightgesture.features.standardise import channel_tables, luma_tables
-from lightgesture.features.types import Image
+from lightgesture.features.types import Float, Image
 from lightgesture.training.pictures.light import photometric
 from lightgesture.training.regions.trees import BoxedPicture
 
-Float = NDArray[np.float32]
 Random = np.random.Generator
 
 

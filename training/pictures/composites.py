@@ -10,15 +10,11 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Float, Image
 from lightgesture.training.pictures.cutouts import Cutout
 from lightgesture.training.pictures.drawn import draw_body, lamp_spots, put_decoys, put_structures
 from lightgesture.training.pictures.light import attenuate, expose
-
-Float = NDArray[np.float32]
-
 
 SIZE: Final = (320, 240)
 """Width and height of a composed picture, pixels."""

@@ -9,9 +9,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Float
 
-Float = NDArray[np.float32]
 Random = np.random.Generator
 
 

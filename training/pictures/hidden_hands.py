@@ -9,12 +9,10 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Float, Image
 
 Random = np.random.Generator
-Float = NDArray[np.float32]
 
 
 CUT_SHARE: Final = 0.5

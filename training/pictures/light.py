@@ -11,10 +11,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Image
+from lightgesture.features.types import Float, Image
 from lightgesture.synth.water import WaterPath
 
-Float = NDArray[np.float32]
 Random = np.random.Generator
 
 SCENE_GAMMA: Final = 1.6

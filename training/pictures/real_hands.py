@@ -12,15 +12,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Box
+from lightgesture.features.types import Box, Float
 from lightgesture.synth.body import SHOULDER, BodyLook, Camera, elbow_position, render_body, to_camera
 from lightgesture.synth.diver import ArmState, DiverState, rotation_matrix
 from lightgesture.synth.hand import decode
 from lightgesture.synth.shading import Light
 from lightgesture.synth.water import Water
 from lightgesture.training.pictures.cutouts import Cutout
-
-Float = NDArray[np.float32]
 
 HEIGHT_IN_PALMS = {"0": 1.47, "left": 1.42, "right": 1.34}
 """Height of an upright hand over its palm's length (wrist to middle knuckle): medians of `hands/train`."""

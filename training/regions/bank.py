@@ -6,22 +6,19 @@ from typing import Final
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.bank import OTHER, Bank, DescriptorSettings, describe_outlines
 from lightgesture.features.find.proposals import propose
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.outline.contours import outline
+from lightgesture.features.types import Contour, Float
 from lightgesture.models import CLASSES, NONE
 from lightgesture.sources import read_picture
 from lightgesture.training.datasets import Sample, read_landmarks, read_negatives, read_table, read_webcam
 from lightgesture.training.pictures.cutouts import cut_out
 from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions.region_pictures import NEGATIVE_SETS, NEVER
-
-Contour = NDArray[np.int32]
-Float = NDArray[np.float32]
 
 CENTRES: Final = 16
 """Typical outlines kept of each token."""

@@ -26,9 +26,7 @@ from lightgesture.features.find.proposals import Proposals, propose
 from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.geometry import pairwise_iou
-from lightgesture.features.types import Box, Image
-
-Float = NDArray[np.float32]
+from lightgesture.features.types import Box, Float, Image
 
 
 @dataclass(frozen=True, slots=True)

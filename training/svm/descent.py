@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.types import Float
 from lightgesture.models.svm import radial_kernel
 from lightgesture.training.svm.projection import Progress
-
-Float = NDArray[np.float32]
 
 MOMENTUM, MEMORY = 0.9, 0.99
 """Of the mean gradient and of its mean square, from step to step."""

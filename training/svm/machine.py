@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.types import Float
 from lightgesture.features.vector import VectorSettings, block_lengths
 from lightgesture.models.calibration import softmax
 from lightgesture.models.classes import CLASSES
@@ -26,7 +27,6 @@ from lightgesture.training.svm.descent import Machine, descend
 from lightgesture.training.svm.projection import ROWS, Described, Progress, describe, fit_projection, in_parts
 from lightgesture.training.temperature import fit_temperature
 
-Float = NDArray[np.float32]
 Double = NDArray[np.float64]
 
 DIMENSIONS: Final = 64

@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.patch import cut_patch
+from lightgesture.features.types import Float
 from lightgesture.features.vector import VectorSettings, block_lengths, feature_vectors
 from lightgesture.models import ModelError
 from lightgesture.training.samples import TrainingSample
 
-Float = NDArray[np.float32]
 Double = NDArray[np.float64]
 Progress = Callable[[str, int, int], None]
 """Told the name of the step, what is done of it and what it has in all (0 where that is not known)."""

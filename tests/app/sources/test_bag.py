@@ -361,6 +361,18 @@ def test_a_data_base_without_metadata(make_bag, tmp_path, is_alone):
         assert [frame.time_s for frame in source] == [0.0, 0.1, 0.2, 0.3]
 
 
+def test_a_bag_that_lacks_one_of_its_files(make_bag):
+    path = make_bag("ros2", camera=raw)
+    metadata = path / "metadata.yaml"
+    line = next(line for line in metadata.read_text().splitlines() if line.strip() == f"- {path.name}.db3")
+    another = line.replace(path.name, "gone_1")
+    metadata.write_text(metadata.read_text().replace(line, f"{line}\n{another}"))
+    frames = []
+    with open_source(path) as source, pytest.raises(InputError, match=r"the bag lacks its file gone_1\.db3"):
+        frames.extend(source)
+    assert len(frames) == 4
+
+
 @pytest.mark.parametrize("kind", ["ros1", "mcap"])
 def test_a_damaged_chunk_is_left_out(make_bag, kind):
     path = make_bag(kind, camera=noise)

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from lightgesture.errors import InputError
 from lightgesture.sources.bag_messages import CDR, ROS1
-from lightgesture.sources.bag_scan import Channel, Message, ScanError, inflate, scan
+from lightgesture.sources.bag_scan import Channel, Message, ScanError, scan
 from lightgesture.sources.folder import natural_key
+from lightgesture.sources.inflate import inflate
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader

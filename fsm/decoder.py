@@ -63,7 +63,7 @@ class Decoder:
         caution: float | None = None,
         source: str | None = None,
     ) -> None:
-        self.grammar = grammar
+        self.grammar, self.source = grammar, source
         self._options: dict[str, Any] = {
             "rule": rule,
             "hold": hold,

@@ -118,6 +118,8 @@ class Pipeline:
                 caution=caution,
                 source=source,
             )
+        elif source is not None:
+            decoder = decoder.for_stream(source)
         if front is None:
             need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
@@ -129,7 +131,7 @@ class Pipeline:
             )
         self.front, self.decoder = front, decoder
         self._frames, self._one_thread = frames, OneBlasThread()
-        self._begin(source, debug)
+        self._begin(decoder.source, debug)
 
     def __enter__(self) -> Self:
         return self

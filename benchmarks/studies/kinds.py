@@ -1,4 +1,4 @@
-"""The studies of `reading_study`, each a table whose rows are trainings from one pool."""
+"""The studies of `studies.reading`, each a table whose rows are trainings from one pool."""
 
 import argparse
 from collections.abc import Callable, Mapping

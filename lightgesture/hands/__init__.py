@@ -1,6 +1,6 @@
 """The hand reader: find, track, read."""
 
-from lightgesture.hands.front import Finder, HandReader
+from lightgesture.hands.front import Finder, Follower, HandReader, Reader
 from lightgesture.hands.reading import ReadingSettings, ReadingStage
 
-__all__ = ["Finder", "HandReader", "ReadingSettings", "ReadingStage"]
+__all__ = ["Finder", "Follower", "HandReader", "Reader", "ReadingSettings", "ReadingStage"]

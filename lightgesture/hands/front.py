@@ -18,7 +18,7 @@ from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import UNSEEN, Sign, Signs
 from lightgesture.hands.memory import ReadingMemory
 from lightgesture.hands.pictures import draw_colour, draw_hands, draw_regions, draw_tracks
-from lightgesture.hands.reading import ReadingStage
+from lightgesture.hands.reading import HandInView
 from lightgesture.records import Hand
 
 
@@ -36,6 +36,42 @@ class Finder(Protocol):
         ...
 
 
+class Follower(Protocol):
+    """Remembers the hands of a stream; `features.track.tracker.Tracker` is the product's own."""
+
+    def predict(self, time_s: float) -> tuple[Box, ...]:
+        """Where they should be in the next frame, source pixels; empty where the whole of it must be searched."""
+        ...
+
+    def explains(self, candidates: Candidates) -> bool:
+        """Whether what was found in the predicted boxes is enough."""
+        ...
+
+    def update(self, candidates: Candidates, time_s: float, whole: bool = True) -> tuple[Track, ...]:
+        """The hands of the frame. whole: all of it was searched."""
+        ...
+
+
+class Reader(Protocol):
+    """Names the token of each hand; `hands.reading.ReadingStage` is the product's own."""
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """What it tells apart."""
+        ...
+
+    def process(
+        self,
+        image: Image,
+        hands: Sequence[HandInView],
+        face: tuple[float, float] | None = None,
+        memory: ReadingMemory | None = None,
+        time_s: float = 0.0,
+    ) -> tuple[Hand, ...]:
+        """The hands of a frame with their tokens, in the same order."""
+        ...
+
+
 class HandReader(FrontEnd):
     """Frames -> the signs of the diver's two bare or gloved hands.
 
@@ -47,11 +83,11 @@ class HandReader(FrontEnd):
 
     def __init__(
         self,
-        read: ReadingStage,
+        read: Reader,
         *,
         find: Finder | None = None,
         colour: ColourStage | None = None,
-        track: Callable[[], Tracker] | None = None,
+        track: Callable[[], Follower] | None = None,
         memory: Callable[[], ReadingMemory] = ReadingMemory,
         mirrored: bool = False,
     ) -> None:
@@ -60,7 +96,7 @@ class HandReader(FrontEnd):
         self.tokens = read.classes
         self._find: Finder = find or load_selector()
         self._colour = colour or ColourStage()
-        self._make_track = track or (lambda: Tracker(selection=self._find.settings))
+        self._make_track: Callable[[], Follower] = track or (lambda: Tracker(selection=self._find.settings))
         self._make_memory = memory
         self._mirrored = mirrored
         self._begin()

@@ -344,10 +344,15 @@ def test_hold_may_be_given_in_seconds():
     assert [frame for frame, record in records if record.type == "word"] == [2]
 
 
-def test_a_decoder_may_be_given():
-    decoder = Decoder(load_grammar(), hold=2, source="mine")
-    records = decode([Signs.of_tokens("0", "0")] * 5, decoder=decoder)
-    assert [(frame, record.source) for frame, record in records if record.type == "word"] == [(1, "mine")]
+@pytest.mark.parametrize(("named", "source"), [({}, "mine"), ({"source": "dive"}, "dive")])
+def test_a_decoder_may_be_given(named, source):
+    pipeline = Pipeline(
+        Recording([Signs.of_tokens("0", "0")] * 3), Decoder(load_grammar(), hold=2, source="mine"), **named
+    )
+    picture = np.zeros((4, 4, 3), np.uint8)
+    records = [record for index in range(3) for record in pipeline.process(picture, index / 30)]
+    assert [record.frame for record in records if record.type == "word"] == [1]
+    assert {record.source for record in [*records, *pipeline.finish()]} == {source}
 
 
 def test_signs_that_the_model_cannot_read_are_refused_and_others_are_told_of():

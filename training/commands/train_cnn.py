@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 SIZES = ("small", "medium", "large")
 PRECISIONS = ("float32", "bfloat16")
-"""Those of `training.net_training`, which is not imported here because it needs torch."""
+"""Those of `training.nets.net_training`, which is not imported here because it needs torch."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

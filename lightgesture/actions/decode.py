@@ -33,6 +33,7 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
     """
     _check(settings)
     tasks = _tasks(inputs, settings)
+    _keep_out_of_inputs(tasks, settings)
     with open_archive_folder(settings) as folder:
         known = {task.place: folder.look_up(task) for task in tasks} if folder else {}
         waiting = [task for task in tasks if known.get(task.place) is None]
@@ -83,6 +84,16 @@ def _tasks(inputs: Sequence[str], settings: DecodeSettings) -> list[Task]:
         return make_tasks(inputs, recursive=settings.recursive, join=settings.join, tell=tell)
     tell("no input named; decoding the bundled clip")
     return [Task(0, str(SAMPLE), SAMPLE.name, SAMPLE.stem)]
+
+
+def _keep_out_of_inputs(tasks: Sequence[Task], settings: DecodeSettings) -> None:
+    """UsageError: pictures of stages would come among the frames of an input."""
+    if not settings.debug_dir:
+        return
+    for task in tasks:
+        folder = os.path.join(settings.debug_dir, task.stem)
+        if os.path.isdir(folder) and os.path.isdir(task.path) and os.path.samefile(folder, task.path):
+            raise UsageError(f"--debug-dir {settings.debug_dir}: {folder} is an input; name another folder")
 
 
 def _suffixes(settings: DecodeSettings) -> list[str]:

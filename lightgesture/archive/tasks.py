@@ -155,9 +155,21 @@ def make_tasks(
     firsts = [path for path in paths if path not in chapters or chapters[path][0] == path]
     stems = output_stems(firsts)
     return [
-        Task(place, path, hide_login(path), stem, paths[path], chapters.get(path, ()))
+        Task(
+            place,
+            path,
+            path if os.path.lexists(path) else hide_login(path),
+            stem,
+            paths[path],
+            chapters.get(path, ()),
+        )
         for place, (path, stem) in enumerate(zip(firsts, stems, strict=True))
     ]
+
+
+def _shown(path: str) -> str:
+    """What records call it: an address, which `decode` does not read, without its login."""
+    return path if os.path.lexists(path) else hide_login(path)
 
 
 def _expand_folders(inputs: Sequence[str], recursive: bool, tell: Callable[[str], object]) -> list[str]:

@@ -12,7 +12,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "inputs",
         nargs="*",
         metavar="INPUT",
-        help="video, folder of frames (natural order), bag, - (standard input) or glob; none: the bundled clip",
+        help="video, bag, folder of videos or of frames (natural order), - (standard input) or glob; none: the bundled "
+        "clip",
     )
     add_options(parser, DECODE)
 

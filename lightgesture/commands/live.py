@@ -11,8 +11,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "source",
         metavar="SOURCE",
-        help="camera (0, /dev/video0), address (http:// for MJPEG, rtsp://, udp://), GStreamer pipeline that ends in "
-        "appsink, or - (standard input: MJPEG, or raw BGR with --size)",
+        help="camera (0, /dev/video0), address (http:// for MJPEG, rtp://0.0.0.0:5600, rtsp://, udp://), file of SDP, "
+        "GStreamer pipeline that ends in appsink, or - (standard input: MJPEG, or raw BGR with --size)",
     )
     add_options(parser, LIVE)
 

@@ -21,13 +21,13 @@ from lightgesture.sources.bag_messages import (
     read_message,
 )
 from lightgesture.sources.bag_scan import UNCLOSED, ScanError
-from lightgesture.sources.bag_storage import FILE_SUFFIXES, Bag
+from lightgesture.sources.bag_storage import FILE_SUFFIXES, METADATA, Bag
 from lightgesture.sources.packets import PacketDecoder
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.types import Source
 
-_METADATA, _METADATA_KEY, _METADATA_BYTES = "metadata.yaml", b"rosbag2_bagfile_information", 4096
+_METADATA_KEY, _METADATA_BYTES = b"rosbag2_bagfile_information", 4096
 _PART = re.compile(r"(?P<bag>.+?)(_\d+)?\.(db3|mcap)(-wal|-shm)?")
 _YEAR_2000_S, _YEAR_2100_S = 946_684_800, 4_102_444_800
 """A clock before or after tells no time of day: it is that of a simulation, or counts from the start of a machine."""
@@ -39,7 +39,7 @@ def is_bag(path: str) -> bool:
     The folder of a recorder that was killed has no metadata, but the parts of one bag of ROS 2 and nothing else.
     """
     if os.path.isdir(path):
-        return _is_metadata(os.path.join(path, _METADATA)) or _has_only_parts(Path(path))
+        return _is_metadata(os.path.join(path, METADATA)) or _has_only_parts(Path(path))
     return os.path.isfile(path) and path.lower().endswith(FILE_SUFFIXES)
 
 
@@ -172,7 +172,7 @@ class BagFile(Source):
 
     def _check_end(self) -> None:
         """InputError: not all could be read."""
-        wrong: list[str] = []
+        wrong = [f"the bag lacks its file {', '.join(self._bag.missing)}"] if self._bag.missing else []
         if self._damage == UNCLOSED and not self._left_out:
             self._tell(f"the bag {UNCLOSED}; read as far as it goes, {self._given} pictures")
         elif self._damage is not None:

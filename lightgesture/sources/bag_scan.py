@@ -7,16 +7,15 @@ damaged chunk is left out, of one that is cut off all is taken that is there.
 import re
 import sqlite3
 import struct
-import sys
 from collections.abc import Iterator
 from contextlib import closing
-from importlib import import_module
 from io import BytesIO
 from pathlib import Path
-from typing import Any, BinaryIO, Final, NamedTuple
+from typing import BinaryIO, Final, NamedTuple
 from urllib.parse import quote
 
 from lightgesture.sources.bag_messages import CDR, NANOSECONDS, ROS1
+from lightgesture.sources.inflate import inflate
 
 ROS1_MAGIC, MCAP_MAGIC, SQLITE_MAGIC = b"#ROSBAG V2.0\n", b"\x89MCAP0\r\n", b"SQLite format 3\0"
 
@@ -69,34 +68,6 @@ def scan(path: Path) -> Iterator[Message]:
         raise ScanError(f"cannot be read ({error.strerror})") from None
     except (struct.error, KeyError, IndexError):
         raise ScanError("is damaged") from None
-
-
-def inflate(content: bytes, compression: str) -> bytes:
-    """What was compressed, as much of it as can be had. ScanError: a kind that is not known here."""
-    whole = b""
-    try:
-        decompress = _decompressor(compression)
-        for start in range(0, len(content), 1 << 16):  # in pieces, so that what is before damage is kept
-            whole += decompress(content[start : start + (1 << 16)])
-    except (OSError, EOFError, RuntimeError, ValueError):
-        pass
-    except Exception as error:  # zstd and lz4 have errors of their own
-        if type(error).__module__.split(".")[0] not in ("backports", "compression", "lz4", "_zstd"):
-            raise
-    return whole
-
-
-def _decompressor(compression: str) -> Any:
-    if compression in ("", "none"):
-        return bytes
-    if compression == "bz2":
-        return import_module("bz2").BZ2Decompressor().decompress
-    if compression == "lz4":
-        return import_module("lz4.frame").LZ4FrameDecompressor().decompress
-    if compression == "zstd":
-        package = "compression" if sys.version_info >= (3, 14) else "backports"
-        return import_module(f"{package}.zstd").ZstdDecompressor().decompress
-    raise ScanError(f"is compressed by {compression!r}, which is not known here")
 
 
 class _Records:

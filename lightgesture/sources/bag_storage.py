@@ -1,5 +1,6 @@
 """What lies in a bag and the messages of one topic: by its index or, where none can be read, from its start."""
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -8,14 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 from lightgesture.errors import InputError
 from lightgesture.sources.bag_messages import CDR, ROS1
-from lightgesture.sources.bag_scan import Channel, Message, ScanError, inflate, scan
+from lightgesture.sources.bag_scan import Channel, Message, ScanError, scan
 from lightgesture.sources.folder import natural_key
+from lightgesture.sources.inflate import inflate
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
 
 FILE_SUFFIXES = (".bag", ".mcap", ".db3", ".bag.active")
 """Endings of the files of bags; a recorder of ROS 1 that was killed leaves the last one."""
+
+METADATA = "metadata.yaml"
+"""The file in a folder that makes it a bag of ROS 2."""
+
+_LISTED_FILE = re.compile(r"^\s*-\s+[\"']?(\S+\.(?:db3|mcap)(?:\.zstd)?)[\"']?\s*$", re.MULTILINE)
 
 _ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 """Begins a message that was compressed by itself; none begins so otherwise."""
@@ -32,13 +39,15 @@ def storage_files(folder: Path) -> list[Path]:
 class Bag:
     """The topics of a bag and their messages.
 
-    remark: why it is read from its start, None where its index is good. InputError when made: it is no bag.
+    remark: why it is read from its start, None where its index is good. missing: names of its files that are not there.
+    InputError when made: it is no bag.
     """
 
     def __init__(self, path: str) -> None:
         self._path, self._name = Path(path), path
         self._reader: AnyReader | None = None
         self.remark: str | None = None
+        self.missing = _missing_files(self._path)
         self.channels: Counter[Channel] = Counter()
         try:
             self._reader = _open_reader(self._path, path)
@@ -87,7 +96,7 @@ class Bag:
                 self.channels[channel] += 1
         if not self.channels:
             raise InputError(f"{self._name}: is no bag that can be read ({reason}); copy or record it again")
-        self.remark = f"has no index that can be read ({reason}); read from its start"
+        self.remark = f"is read from its start, for its index cannot be ({reason})"
 
     def _scan(self, topic: str, given: int) -> Iterator[Message]:
         for channel, recorded_ns, data in _scan_all(self._files()):
@@ -97,6 +106,16 @@ class Bag:
                 given -= 1
             else:
                 yield channel, recorded_ns, _plain(data)
+
+
+def _missing_files(path: Path) -> list[str]:
+    """What the metadata of a folder name and is not there."""
+    try:
+        text = (path / METADATA).read_text("utf-8", "replace")
+    except OSError:  # none, or no folder
+        return []
+    names = [Path(match[1]).name for match in _LISTED_FILE.finditer(text)]
+    return [name for name in dict.fromkeys(names) if not (path / name).exists()]
 
 
 def _scan_all(files: Sequence[Path]) -> Iterator[Message]:

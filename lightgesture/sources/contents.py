@@ -1,6 +1,7 @@
 """What a folder holds: recordings, which are inputs of their own, or the frames of one."""
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -55,7 +56,8 @@ def _look(path: str, recursive: bool, found: Contents) -> None:
             if is_bag(place):
                 found.recordings.append(place)
             elif recursive:
-                _look(place, recursive, found)
+                with suppress(InputError):  # a system's folder on a card, which nobody may read
+                    _look(place, recursive, found)
             else:
                 found.folders += 1
         elif is_annotated_copy(place):

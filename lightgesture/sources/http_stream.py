@@ -21,6 +21,9 @@ MOST_LOGINS: Final = 3
 """Answers to challenges for one picture stream: one for each redirection that has its own, and no more, for cameras
 lock out who tries too often."""
 
+SNAPSHOT_S: Final = 0.05
+"""Seconds from one request to the next where each answer is one picture; shorter ones would only keep a camera busy."""
+
 _JPEG = b"\xff\xd8"
 _PAGE = (b"<", b"{")
 _LOGIN_HEADER = "Authorization"
@@ -30,8 +33,9 @@ class HttpStream(LiveSource):
     """The JPEG files in the answer to one request, still encoded.
 
     Where the files begin and end is read from themselves, so that neither the boundary of a multipart answer nor
-    lengths in its headers need be right. User and password may stand in the address and are kept out of `name`; they
-    are sent to that host alone. insecure: a certificate that nobody vouches for will do.
+    lengths in its headers need be right. Of an address of single pictures one is asked for after the other. User and
+    password may stand in the address and are kept out of `name`; they are sent to that host alone. insecure: a
+    certificate that nobody vouches for will do.
     """
 
     def __init__(self, address: str, insecure: bool = False) -> None:
@@ -69,6 +73,23 @@ class HttpStream(LiveSource):
             self._answer.close()
 
     def __iter__(self) -> Iterator[bytes]:
+        while True:
+            start_s, count = time.monotonic(), 0
+            for file in self._pictures():
+                count += 1
+                yield file
+            if count != 1 or not self._is_single_picture():
+                return
+            self.close()
+            time.sleep(max(0.0, start_s + SNAPSHOT_S - time.monotonic()))
+            self.__enter__()
+
+    def _is_single_picture(self) -> bool:
+        """Whether the address is that of the newest picture and not of a stream."""
+        return self._answer is not None and self._answer.headers.get_content_type() == "image/jpeg"
+
+    def _pictures(self) -> Iterator[bytes]:
+        """The files in one answer."""
         splitter = JpegSplitter()
         start_s = last_s = time.monotonic()
         while chunk := self._read():

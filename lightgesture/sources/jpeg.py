@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-_START = b"\xff\xd8\xff"
+_START, _END = b"\xff\xd8\xff", b"\xff\xd9"
 _SCAN_END = re.compile(rb"\xff[^\x00\xd0-\xd7\xff]", re.DOTALL)
 """The next marker after compressed data: neither a stuffed byte, nor a restart, nor a fill."""
 
@@ -17,6 +17,10 @@ _FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 MAX_BYTES: Final = 16 << 20
 """Longest file; a longer one is no picture."""
+
+ENDLESS: Final = 3
+"""Files one after the other without the mark of their end, and none with it, after which the camera is taken for one
+that never sends it; any other such file was cut off."""
 
 MAX_PIXELS: Final = 40_000_000
 """Most pixels of a picture, against files that promise more than fits the memory."""
@@ -35,7 +39,8 @@ class JpegSplitter:
     def __init__(self, max_bytes: int = MAX_BYTES, max_pixels: int = MAX_PIXELS) -> None:
         self._max_bytes, self._max_pixels = max_bytes, max_pixels
         self._buffer = bytearray()
-        self._is_begun = self._is_in_scan = False
+        self._is_begun = self._is_in_scan = self._has_scan = False
+        self._endless: int | None = 0
         self._place = self._passed_over = 0
         self.passed_over: list[int] = []
 
@@ -67,7 +72,7 @@ class JpegSplitter:
             self._pass_over(max(0, len(self._buffer) - len(_START) + 1))
             return False
         self._pass_over(start)
-        self._is_begun, self._is_in_scan, self._place = True, False, 2
+        self._is_begun, self._is_in_scan, self._has_scan, self._place = True, False, False, 2
         return True
 
     def _leave_scan(self) -> bool:
@@ -82,15 +87,17 @@ class JpegSplitter:
         if len(buffer) < place + 2:
             return False
         kind = buffer[place + 1]
-        if buffer[place] != _FILL or kind in (0x00, _IMAGE_START):  # damaged, or cut off by the next one
+        if buffer[place] == _FILL and kind == _IMAGE_START and self._is_whole():
+            found.append(bytes(buffer[:place]) + _END)
+            self._take(place)
+        elif buffer[place] != _FILL or kind in (0x00, _IMAGE_START):  # damaged, or cut off by the next one
             self._discard(place)
         elif kind == _FILL:
             self._place += 1
         elif kind == _IMAGE_END:
             found.append(bytes(buffer[: place + 2]))
-            self.passed_over.append(self._passed_over)
-            self._passed_over, self._is_begun = 0, False
-            del buffer[: place + 2]
+            self._endless = None
+            self._take(place + 2)
         elif kind in _ALONE:
             self._place += 2
         else:
@@ -107,11 +114,24 @@ class JpegSplitter:
         else:
             self._place += 2 + length
             self._is_in_scan = kind == _SCAN
+            self._has_scan = self._has_scan or self._is_in_scan
         return True
 
     def _is_fair(self, size: bytes) -> bool:
         height, width = int.from_bytes(size[:2], "big"), int.from_bytes(size[2:], "big")
         return 0 < height * width <= self._max_pixels
+
+    def _is_whole(self) -> bool:
+        """Whether a file that the next one ends is all that its camera sends."""
+        if self._endless is None or not self._has_scan:
+            return False
+        self._endless += 1
+        return self._endless > ENDLESS
+
+    def _take(self, length: int) -> None:
+        self.passed_over.append(self._passed_over)
+        self._passed_over, self._is_begun = 0, False
+        del self._buffer[:length]
 
     def _discard(self, length: int) -> None:
         self._pass_over(length)

@@ -2,6 +2,7 @@
 
 import os
 import re
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ PICTURE_SUFFIXES = frozenset(
 # turned upright where the picture says so.
 _FLAGS = cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH
 
-_START_OF_SCAN = 0xDA
+_HUFFMAN_TABLES, _START_OF_SCAN = 0xC4, 0xDA
 _END_OF_IMAGE = b"\xff\xd9"
 # Magic number, width, height and the largest value of a portable pixmap, with comments between.
 _PNM_HEADER = re.compile(rb"P[2356]" + rb"(?:\s|#[^\n]*\n)+(\d+)" * 3)
@@ -82,11 +83,45 @@ def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:
     """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads."""
     # imdecode and not imread, which cannot open every name on every system
     data = np.frombuffer(content, np.uint8)
+    place = _scan_without_tables(data)
+    if place:
+        data = np.concatenate([data[:place], _standard_tables(), data[place:]])
     try:
         image: NDArray[Any] | None = cv2.imdecode(data, _FLAGS) if data.size else None
     except cv2.error:  # a header that promises more pixels than OpenCV takes
         return None
     return image
+
+
+def _scan_without_tables(data: NDArray[np.uint8]) -> int:
+    """Where the scan of a JPEG file without Huffman tables begins, 0 for all others.
+
+    Cameras that send JPEG files as video leave the tables out, which are always the same; without them OpenCV makes
+    noise of the file and says nothing.
+    """
+    if data.size < 4 or bytes(data[:2]) != b"\xff\xd8":
+        return 0
+    place = 2
+    while place + 4 <= data.size and data[place] == 0xFF and data[place + 1] != _HUFFMAN_TABLES:
+        if data[place + 1] == _START_OF_SCAN:
+            return place
+        is_fill = data[place + 1] == 0xFF
+        place += 1 if is_fill else 2 + (int(data[place + 2]) << 8 | int(data[place + 3]))
+    return 0
+
+
+@cache
+def _standard_tables() -> NDArray[np.uint8]:
+    """The segments of Huffman tables by ITU-T T.81, annex K.3, as OpenCV writes them into every file."""
+    data = np.asarray(cv2.imencode(".jpg", np.zeros((8, 8, 3), np.uint8))[1], np.uint8).ravel()
+    tables: list[NDArray[np.uint8]] = []
+    place = 2
+    while data[place + 1] != _START_OF_SCAN:
+        end = place + 2 + (int(data[place + 2]) << 8 | int(data[place + 3]))
+        if data[place + 1] == _HUFFMAN_TABLES:
+            tables.append(data[place:end])
+        place = end
+    return np.concatenate(tables)
 
 
 def _read_bytes(path: str) -> bytes:

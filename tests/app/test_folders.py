@@ -254,3 +254,10 @@ def test_annotated_videos_keep_sound_and_metadata(tmp_path, codec, suffix):
             assert float(stream.start_time * stream.time_base) == pytest.approx(0, abs=0.06)
             loud = sum(np.abs(part.to_ndarray()).max() > 0.1 for part in found.decode(stream))
             assert loud * 1024 / 44100 == pytest.approx(3.0, abs=0.4)
+
+
+def test_pictures_of_stages_do_not_come_among_frames(run, make_folder, tmp_path, fake):
+    result = run("decode", make_folder("frames", 2), "--debug-dir", tmp_path)
+    assert (result.status, len(result.err)) == (ExitStatus.USAGE, 1)
+    assert f"{tmp_path / 'frames'} is an input; name another folder" in result.err[0]
+    assert len(os.listdir(tmp_path / "frames")) == 2

@@ -334,7 +334,7 @@ def test_bags_that_are_cut_off_are_read_as_far_as_they_go(make_bag, capsys):
             np.array_equal(frame.image, noise_image(image))
             for frame, image in zip(frames, IMAGES, strict=False)
         )
-    assert "has no index that can be read" in capsys.readouterr().err
+    assert "is read from its start, for its index cannot be" in capsys.readouterr().err
 
 
 def test_a_bag_whose_recorder_was_killed(make_bag, capsys):
@@ -359,6 +359,18 @@ def test_a_data_base_without_metadata(make_bag, tmp_path, is_alone):
     (path / "metadata.yaml").unlink()
     with open_source(next(path.glob("*.db3")) if is_alone else path) as source:
         assert [frame.time_s for frame in source] == [0.0, 0.1, 0.2, 0.3]
+
+
+def test_a_bag_that_lacks_one_of_its_files(make_bag):
+    path = make_bag("ros2", camera=raw)
+    metadata = path / "metadata.yaml"
+    line = next(line for line in metadata.read_text().splitlines() if line.strip() == f"- {path.name}.db3")
+    another = line.replace(path.name, "gone_1")
+    metadata.write_text(metadata.read_text().replace(line, f"{line}\n{another}"))
+    frames = []
+    with open_source(path) as source, pytest.raises(InputError, match=r"the bag lacks its file gone_1\.db3"):
+        frames.extend(source)
+    assert len(frames) == 4
 
 
 @pytest.mark.parametrize("kind", ["ros1", "mcap"])

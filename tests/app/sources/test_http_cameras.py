@@ -48,6 +48,8 @@ class Camera(BaseHTTPRequestHandler):
             self.answer(200, body=b'{"error": 5}', kind="application/json")
         elif path == "/mistyped":
             self.answer(200, body=FILE * 2, kind="text/html")
+        elif path == "/newest":
+            self.answer(200, body=FILE, kind="image/jpeg")
         elif path.startswith("/to"):
             self.answer(302, location=path[3:] if path.startswith("/to/") else self.elsewhere)
         else:
@@ -181,6 +183,13 @@ def test_a_wrong_login_is_not_tried_again_and_again(camera):
         with pytest.raises(InputError, match="the server answers 401 Unauthorized; check user and password"):
             read(f"http://diver:hush@{place}{path}")
         assert len(seen) == most
+
+
+def test_an_address_of_single_pictures_is_asked_again_and_again(camera):
+    place, seen = camera()
+    with HttpStream(f"http://{place}/newest") as stream:
+        assert [file for file, _ in zip(stream, range(4), strict=False)] == [FILE] * 4
+    assert len(seen) >= 4
 
 
 def test_nobody_listens():

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lightgesture.sources import to_image
 from lightgesture.sources.jpeg import JpegSplitter
 
 
@@ -48,6 +49,30 @@ def test_noise_before_a_file_costs_no_more_than_one(noise, step):
 def test_a_file_that_is_cut_off_is_left_out():
     assert split(FILES[0][:-500] + FILES[1]) == [FILES[1]]
     assert split(FILES[0][:30] + FILES[1] + FILES[3])[-1] == FILES[3]
+
+
+def test_a_camera_that_never_sends_the_mark_of_the_end():
+    part = b"\r\n--frame\r\nContent-Type: image/jpeg\r\n\r\n"
+    found = split(b"".join(FILES[0][:-2] + part for _ in range(8)))
+    assert len(found) == 4
+    pictures = [to_image(file) for file in found]
+    assert all(np.array_equal(picture, to_image(FILES[0])) for picture in pictures)
+    assert split(FILES[0] + b"".join(FILES[1][: 600 + n] for n in range(8)) + FILES[3]) == [
+        FILES[0],
+        FILES[3],
+    ]
+
+
+@pytest.mark.parametrize("file", [FILES[0], FILES[2], jpeg(5, (40, 30))])
+def test_files_without_tables_have_the_usual_ones(file):
+    bare, place = bytearray(file[:2]), 2
+    while file[place + 1] != 0xDA:
+        end = place + 2 + int.from_bytes(file[place + 2 : place + 4], "big")
+        bare += b"" if file[place + 1] == 0xC4 else file[place:end]
+        place = end
+    bare += file[place:]
+    assert len(bare) < len(file) - 400
+    assert np.array_equal(to_image(bytes(bare)), to_image(file))
 
 
 def test_too_many_bytes_or_pixels_are_left_out():

@@ -183,6 +183,13 @@ def test_a_weak_sign_rejects_the_sentence_and_is_named(diver):
     assert (issued(events), rejected(events)) == ([], ["weak_sign"])
 
 
+def test_a_number_must_be_seen_better_than_a_word_that_little_else_could_be(diver):
+    diver.words("STOP HOVER")
+    diver.show(Signs(likely("ok"), likely("3", 0.6)), 0.8)
+    events = diver.show(UNREAD, 0.25) + diver.words("GO") + diver.pause()
+    assert (issued(events), rejected(events)) == ([], ["weak_sign"])
+
+
 def test_a_weak_sign_is_asked_for_again_and_its_repetition_takes_its_place(diver):
     diver.words("STOP HOVER")
     events = diver.show(Signs(likely("ok"), likely("3", 0.2)), 0.8) + diver.show(UNREAD, 0.25)
@@ -480,7 +487,7 @@ def test_idle_hands_issue_nothing(grammar):
 def test_caution_is_the_grammars_or_the_callers(grammar, write_grammar):
     careful = load_grammar(write_grammar(("caution = 1", "caution = 3")))
     assert careful.sentence.caution == 3
-    doubt = likely("3", 0.6, {"2": 0.15})
+    doubt = likely("3", 0.75, {"2": 0.15})
 
     def outcome(language, **options):
         diver = Diver(language, **options)

@@ -196,7 +196,17 @@ def test_a_weak_sign_is_asked_for_again_and_its_repetition_takes_its_place(diver
     assert [event.detail for event in events if event.type == "notice"] == [
         "3 was not seen well; show it again"
     ]
+    diver.show(UNREAD, 0.6)
     assert issued(diver.words("3 GO")) == ["STOP HOVER 3 GO"]
+
+
+def test_what_comes_too_soon_to_be_a_repetition_is_the_next_word(diver):
+    diver.words("STOP HOVER")
+    diver.show(Signs(likely("ok"), likely("3", 0.4)), 0.8)
+    diver.show(UNREAD, 0.25)
+    events = diver.words("3 GO") + diver.pause()
+    assert (issued(events), rejected(events)) == ([], ["weak_sign"])
+    assert [event.text for event in events if event.type == "rejected"] == ["STOP HOVER 33 GO"]
 
 
 def test_a_sign_that_nobody_could_read_is_not_passed_over(diver):

@@ -18,7 +18,7 @@ MAX_HOLD = 1000
 MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 """Shortest and longest hold that a file may ask for, seconds."""
 
-MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
+MIN_CAUTION, MAX_CAUTION = 0.1, 3.0
 """Least and greatest caution that a file may ask for."""
 
 MAX_UNREAD = 100.0

@@ -58,7 +58,7 @@ class SentenceSettings:
     """How the rule "sentence" reads."""
 
     caution: float = 1.0
-    """How sure a sentence must be, 0.1 to 10: every bound is that many times as strict. Less issues more of what is
+    """How sure a sentence must be, 0.1 to 3: every bound is that many times as strict. Less issues more of what is
     meant, and more that is wrong."""
     hold_seconds: float = 0.4
     """Least length of a sign, seconds, 0.05 to 60. Less: signs may be shorter, and more is read in passing."""

@@ -1,8 +1,10 @@
 """What speaks against issuing the best reading of a complete sentence; every bound is made stricter by `caution`."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
+from lightgesture.fsm.language.forms import is_digit, split_carrier
 from lightgesture.fsm.rules.readings import Reading
 from lightgesture.fsm.rules.search import Search
 
@@ -11,6 +13,13 @@ MARGIN: Final = 2.5
 
 WEAK: Final = 0.25
 """Least geometric mean probability of the less sure hand over the best window of each word, 0 to 1, at caution 1."""
+
+NUMBER: Final = 0.65
+"""The same of a digit, or of a word that carries a number: counts of fingers look alike, and no table speaks against
+another number. All others together are then half as likely at most."""
+
+MOST: Final = 0.9
+"""What a sign needs at most, however great the caution: readers are hardly ever surer."""
 
 END: Final = 0.4
 """The same of the end word, without which nothing is issued."""
@@ -38,13 +47,24 @@ def find_doubt(search: Search, slot: int, reading: Reading, caution: float) -> D
     """Why the reading in this slot, the best one and complete, may not be issued; None: it may."""
     if search.margin(slot) < MARGIN * caution:
         return Doubt(reason="ambiguous", detail=f"it could as well be {search.rival(slot)}; sign it again")
-    certainties = search.certainties(slot)
-    place = min(range(len(certainties)), key=certainties.__getitem__)
+    weak = find_weak(search.certainties(slot), reading.words, caution)
+    if weak is not None:
+        return Doubt(reason="weak_sign", detail=f"{weak} was not seen well; sign it again")
+    return _find_gap(search, slot, reading, caution)
+
+
+def is_weak(word: str, certainty: float, caution: float) -> bool:
+    """Whether a sign was seen too badly for its word to be issued."""
+    is_number = is_digit(word) or split_carrier(word)[1] is not None
+    return certainty < min((NUMBER if is_number else WEAK) * caution, MOST)
+
+
+def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float) -> str | None:
+    """The first word of a complete sentence that was seen too badly, its end word before all others."""
     if certainties[-1] < min(END * caution, MOST_END):
-        place = len(certainties) - 1
-    elif certainties[place] >= WEAK * caution:
-        return _find_gap(search, slot, reading, caution)
-    return Doubt(reason="weak_sign", detail=f"{reading.words[place]} was not seen well; sign it again")
+        return words[-1]
+    pairs = zip(words, certainties, strict=True)
+    return next((word for word, certainty in pairs if is_weak(word, certainty, caution)), None)
 
 
 def _find_gap(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:

@@ -25,8 +25,9 @@ class Spoken:
 class Reading:
     """A hypothesis. began: when its first word did, seconds of the search. touched: when the last one entered.
 
-    state: of the grammar's table; before: the state that the last word led from. asked: words of which the diver was
-    asked to show the last sign again, so that they replace it.
+    state: of the grammar's table; before: the state that the last word led from. longest:
+    seconds that it had passed over before its last word. asked: words of which the diver was asked, at asked_s, to show
+    the last sign again, so that they replace it.
     """
 
     spoken: tuple[Spoken, ...]
@@ -36,7 +37,9 @@ class Reading:
     touched: float
     text: int
     words: tuple[str, ...]
+    longest: float
     asked: frozenset[str] = frozenset()
+    asked_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

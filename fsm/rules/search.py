@@ -37,6 +37,10 @@ JOIN_COST: Final = 3.0
 """What a digit costs besides that follows another one without the joining word, once a sentence: hands that leave a
 digit pass through others. Nothing where the language has no joining word."""
 
+REACTION_S: Final = 0.5
+"""Seconds that it takes at least to see that a sign is asked for again and to begin it: what comes sooner is the next
+word, of a diver who did not look."""
+
 BEAM: Final = 12.0
 """How far behind the free loop a reading may be before it is given up, in units of score."""
 
@@ -203,14 +207,14 @@ class Search:
         spoken = (self._spoken(word, column, 0.0, 0.0),)
         state = self._grammar.table.transitions[0][word]
         text = self._text_number((word,))
-        self._enter(Reading(spoken, state, 0, windows.start_s, windows.now, text, (word,)), score, 0.0)
+        self._enter(Reading(spoken, state, 0, windows.start_s, windows.now, text, (word,), 0.0), score)
 
     def _continue(self, slot: int, reading: Reading, column: int, score: float) -> None:
         """A word goes on with a reading, where the table has it, or replaces the last one that was asked for
         again."""
         transitions = self._grammar.table.transitions
         for word in self._inside[column]:
-            is_again = word in reading.asked
+            is_again = word in reading.asked and self.windows.start_s >= reading.asked_s + REACTION_S
             before = reading.before if is_again else reading.state
             target = transitions[before].get(word)
             if target is None or (not is_again and len(reading.words) >= self._grammar.limits.max_words):
@@ -226,12 +230,13 @@ class Search:
             before_it = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
             spoken = (*before_it, self._spoken(word, column, behind, fine))
             text = self._text_number(words)
-            longest = float(self._longest_row[earlier, slot])
-            asked = self._asked((words, column)) if not is_again else frozenset[str]()
-            new = Reading(spoken, target, before, reading.began, self.windows.now, text, words, asked)
+            longest = reading.longest if is_again else float(self._longest_row[earlier, slot])
+            new = Reading(spoken, target, before, reading.began, self.windows.now, text, words, longest)
+            if not is_again:
+                self._keep_asking(new, column)
             if is_again and (slot_again := self._slots.get((words, column))) is not None:
                 self._drop(slot_again)  # what led to the sign that is replaced must not lead anywhere else
-            self._enter(new, score - fine, longest)
+            self._enter(new, score - fine)
 
     def _fine(self, reading: Reading, word: str) -> float:
         """What a word costs for its place alone."""
@@ -239,11 +244,12 @@ class Search:
         is_joined = self._join is None or not (is_digit(word) and is_digit(last)) or word == last
         return 0.0 if is_joined or any(item.fine for item in reading.spoken) else JOIN_COST
 
-    def _asked(self, key: tuple[tuple[str, ...], int]) -> frozenset[str]:
-        """What was asked for again in the reading that has this key, if there is one."""
-        slot = self._slots.get(key)
-        reading = None if slot is None else self.readings[slot]
-        return frozenset() if reading is None else reading.asked
+    def _keep_asking(self, reading: Reading, column: int) -> None:
+        """What was asked for again stays so where a reading finds a better way to the same words."""
+        slot = self._slots.get((reading.words, column))
+        other = None if slot is None else self.readings[slot]
+        if other is not None:
+            reading.asked, reading.asked_s = other.asked, other.asked_s
 
     def _is_better(self, words: tuple[str, ...], column: int, score: float) -> bool:
         """Whether a reading with this score is worth keeping: it may already be there, with a better one."""
@@ -260,8 +266,8 @@ class Search:
                     self._text[slot] = reading.text = self._texts.setdefault(text, len(self._texts))
         return self._texts.setdefault(spell(words, self._join), len(self._texts))
 
-    def _enter(self, reading: Reading, score: float, longest: float) -> None:
-        """Keep a reading whose last word begins to count now. longest: seconds that it has passed over so far."""
+    def _enter(self, reading: Reading, score: float) -> None:
+        """Keep a reading whose last word begins to count now."""
         column = reading.spoken[-1].column
         key = reading.words, column
         slot = self._slots.get(key)
@@ -275,7 +281,7 @@ class Search:
         self.readings[slot] = reading
         self._text[slot], self._column[slot] = reading.text, column
         self.held[slot] = self.best[slot] = score
-        self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, longest
+        self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, reading.longest
         self.sure[slot] = self.windows.weaker[column]
 
     def _free_slot(self, score: float) -> int | None:
@@ -382,7 +388,7 @@ class Search:
         """In readings of so many words, one of `words` replaces the last one when it is shown again."""
         for reading in self.readings:
             if reading is not None and len(reading.spoken) == count and reading.words[-1] in words:
-                reading.asked = words
+                reading.asked, reading.asked_s = words, self.windows.now
 
     def hold(self, column: int, confidence: float) -> Hold:
         """A sign that was shown over the window."""

@@ -19,7 +19,7 @@ from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.language.settings import SentenceSettings
 from lightgesture.fsm.reader import CONFIRMING, Reader
 from lightgesture.fsm.reporter import DECIMALS, DISPLAY_INTERVAL_S, Reporter, Timeline
-from lightgesture.fsm.rules.doubts import MARGIN, MISFIT, WEAK, Doubt, find_doubt
+from lightgesture.fsm.rules.doubts import MARGIN, MISFIT, Doubt, find_doubt, is_weak
 from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.rules.readings import Reading, Summary
 from lightgesture.fsm.rules.search import Search
@@ -214,7 +214,7 @@ class SentenceRule:
         if len(agreed) <= kept or (kept == 0 and len(self._told) > 1):
             return
         certainties = self.search.certainties(lead)
-        if certainties[0] < WEAK * self._caution:
+        if is_weak(words[0], certainties[0], self._caution):
             return
         self._open(reading, agreed, certainties, now_s)
         for place in range(kept, len(agreed)):
@@ -248,7 +248,7 @@ class SentenceRule:
 
     def _ask_again(self, lead: int, reading: Reading) -> None:
         """A sign that was seen too badly to be issued with may be shown once more in place of itself."""
-        if self.search.certainty(lead) >= WEAK * self._caution:
+        if not is_weak(reading.words[-1], self.search.certainty(lead), self._caution):
             return
         words = {
             near.words[-1] for near in self.search.near(lead, MARGIN) if len(near.words) == len(reading.words)

@@ -19,7 +19,7 @@ MAX_JOBS = 1024
 MIN_HOLD_S, MAX_HOLD_S = 0.05, 60.0
 """Shortest and longest hold, seconds."""
 
-MIN_CAUTION, MAX_CAUTION = 0.1, 10.0
+MIN_CAUTION, MAX_CAUTION = 0.1, 3.0
 """Least and greatest caution, as a grammar file may ask for."""
 
 MAX_GIVE_UP_S = 86_400.0

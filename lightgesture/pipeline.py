@@ -4,6 +4,7 @@ import os
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
+from functools import partial
 from typing import Self
 
 from lightgesture.features.colour import ColourStage
@@ -14,7 +15,7 @@ from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, load_grammar
 from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
-from lightgesture.hands.memory import memory_for_hold
+from lightgesture.hands.memory import ReadingMemory, memory_for_hold, memory_for_sentences
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import load_classifier
 from lightgesture.models.loading import DEFAULT
@@ -92,12 +93,11 @@ class Pipeline:
                 source=source,
             )
         if front is None:
-            need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
                 ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
                 find=RegionStage(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
-                memory=lambda: memory_for_hold(*need),
+                memory=partial(_memory, decoder.rule, decoder.hold_frames, decoder.hold_seconds),
                 mirrored=mirrored,
             )
         self.front, self.decoder = front, decoder
@@ -186,6 +186,13 @@ class Pipeline:
             if type(event) in self._counts:
                 self._counts[type(event)] += 1
         return list(events)
+
+
+def _memory(rule: Rule, hold_frames: int | None, hold_seconds: float | None) -> ReadingMemory:
+    """What remembers the readings of a hand, for a rule and its hold."""
+    if rule == SENTENCE and hold_seconds is not None:
+        return memory_for_sentences(hold_seconds)
+    return memory_for_hold(hold_frames, hold_seconds)
 
 
 def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:

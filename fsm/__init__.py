@@ -1,4 +1,7 @@
-"""From tokens to instructions: grammar, dwell, decoder. No NumPy, no clock, no file but the grammar's."""
+"""From tokens to instructions: grammar, rules, decoder.
+
+No NumPy but in the rule "sentence", no clock, no file but the grammar's.
+"""
 
 from lightgesture.fsm.decoder import Decoder
 from lightgesture.fsm.events import Event, Instruction, Notice, Rejected, State, Word

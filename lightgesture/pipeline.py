@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager
 from copy import copy
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from typing import Any, Self
 
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from lightgesture.front_end import FrontEnd, StageClock
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
 from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
-from lightgesture.hands.memory import memory_for_hold
+from lightgesture.hands.memory import ReadingMemory, memory_for_hold, memory_for_sentences
 from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
@@ -121,12 +122,11 @@ class Pipeline:
         elif source is not None:
             decoder = decoder.for_stream(source)
         if front is None:
-            need = decoder.hold_frames, decoder.hold_seconds
             front = HandReader(
                 ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
                 find=load_selector(selector),
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
-                memory=lambda: memory_for_hold(*need),
+                memory=partial(_memory, decoder.rule, decoder.hold_frames, decoder.hold_seconds),
                 mirrored=mirrored,
             )
         self.front, self.decoder = front, decoder
@@ -250,6 +250,13 @@ class Pipeline:
         if self.start_utc is None:
             return list(events)
         return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
+
+
+def _memory(rule: Rule, hold_frames: int | None, hold_seconds: float | None) -> ReadingMemory:
+    """What remembers the readings of a hand, for a rule and its hold."""
+    if rule == SENTENCE and hold_seconds is not None:
+        return memory_for_sentences(hold_seconds)
+    return memory_for_hold(hold_frames, hold_seconds)
 
 
 def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:

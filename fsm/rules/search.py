@@ -50,8 +50,9 @@ MOST: Final = 40
 MOST_TEXTS: Final = 1000
 """Texts of readings, those that were given up included, that are told apart by number."""
 
-LIKELY: Final = 0.04
-"""Geometric mean probability of a sign over the least length, 0 to 1, below which no word begins with it."""
+LIKELY: Final = 0.06
+"""Geometric mean probability of a sign over the least length, 0 to 1, below which no word begins with it: more than
+that of hands that are not in view."""
 
 
 class Search:
@@ -104,7 +105,7 @@ class Search:
         self.readings: list[Reading | None] = [None] * MOST
         self._slots: dict[tuple[tuple[str, ...], int], int] = {}
         self._texts: dict[str, int] = {}
-        self._text = np.full(MOST, -1)
+        self._text, self._touched = np.full(MOST, -1), np.zeros(MOST)
         self.held, self.gap = np.full(MOST, NEVER), np.full(MOST, NEVER)
         self.best = np.full(MOST, NEVER)
         self.sure = np.full(MOST, NEVER)
@@ -280,6 +281,7 @@ class Search:
             self._best_row[:, slot] = NEVER
         self.readings[slot] = reading
         self._text[slot], self._column[slot] = reading.text, column
+        self._touched[slot] = reading.touched
         self.held[slot] = self.best[slot] = score
         self.credit[slot], self.bridged[slot], self.longest[slot] = SHORT_COST, 0.0, reading.longest
         self.sure[slot] = self.windows.weaker[column]
@@ -302,9 +304,10 @@ class Search:
         self.best[slot] = self.held[slot] = self.gap[slot] = NEVER
 
     def _prune(self) -> None:
-        """Give up what is far behind, and find what leads."""
-        far = self.free - BEAM
-        for slot in ((self.best < far) & (self._text >= 0)).nonzero()[0].tolist():
+        """Give up what is far behind or has not grown for too long, and find what leads."""
+        is_old = self._touched < self.windows.now - self._grammar.dwell.timeout_s
+        is_given_up = (self.best < self.free - BEAM) | is_old
+        for slot in (is_given_up & (self._text >= 0)).nonzero()[0].tolist():
             self._drop(slot)
         self.lead = int(self.best.argmax()) if self._slots else None
 

@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 
 HOLD_SHARE: Final = 1 / 3
 """Of the hold that is looked at: long enough to bridge a bad frame or two, and too short to make or hide a sign."""
+SENTENCE_SHARE: Final = 1 / 2
+"""The same of the least length of a sign, for a reader of sentences, to whom a bad moment looks like a sign."""
+TOLERANCE_S: Final = 0.001
+"""Containers round time stamps to milliseconds."""
 MOST_FRAMES: Final = 31
 """Of a hold that is given in seconds: bounds the time of a fast camera's frames."""
 FEWEST_FOR_A_MEDIAN: Final = 3
@@ -55,3 +59,8 @@ def memory_for_hold(frames: int | None, seconds: float | None) -> ReadingMemory:
     if frames is not None:
         return ReadingMemory(max(1, int(frames * HOLD_SHARE)))
     return ReadingMemory(MOST_FRAMES, (seconds or 0.0) * HOLD_SHARE)
+
+
+def memory_for_sentences(hold_s: float) -> ReadingMemory:
+    """The memory for sentences whose signs last `hold_s` seconds at least."""
+    return ReadingMemory(MOST_FRAMES, hold_s * SENTENCE_SHARE + TOLERANCE_S)

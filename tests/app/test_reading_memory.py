@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lightgesture.hands.memory import ReadingMemory, memory_for_hold
+from lightgesture.hands.memory import ReadingMemory, memory_for_hold, memory_for_sentences
 
 SIGNS = {"5": (0.9, 0.1), "0": (0.1, 0.9)}
 
@@ -62,3 +62,11 @@ def test_time_that_runs_back_forgets():
     for time_s in (1.0, 1.1, 1.2):
         memory.steady(1, np.array(SIGNS["5"], np.float32), time_s)
     assert memory.steady(1, np.array(SIGNS["0"], np.float32), 0.5).argmax() == 1
+
+
+@pytest.mark.parametrize(("rate", "bridged"), [(10, 1), (30, 3), (60, 6)])
+def test_for_sentences_half_of_a_sign_is_looked_at(rate, bridged):
+    shown = "5" * rate + "0" * bridged + "5" * rate
+    assert "0" not in read(memory_for_sentences(0.4), shown, 1 / rate)
+    shown = "5" * rate + "0" * (bridged + 2) + "5" * rate
+    assert "0" in read(memory_for_sentences(0.4), shown, 1 / rate)

@@ -282,6 +282,12 @@ def test_an_open_sentence_times_out_and_ends_with_the_input(diver):
     assert (diver.decoder.state, diver.decoder.sentence) == ("idle", "")
 
 
+def test_what_was_too_weak_to_be_told_is_forgotten_in_time(diver):
+    diver.show(Signs(likely("0", 0.3), likely("0", 0.2)), 0.8)
+    diver.pause(30.0)
+    assert not any(diver.decoder._rule.search.readings)
+
+
 def test_a_word_that_opens_nothing_is_told(diver):
     events = diver.words("HOVER")
     assert [event.reason for event in events if event.type == "notice"] == ["out_of_order"]

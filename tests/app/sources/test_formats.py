@@ -209,10 +209,12 @@ def test_a_variable_rate(tmp_path, run):
     check(run, target, "--hold-seconds", 0.5)
 
 
-def test_an_annotated_copy(tmp_path, run):
+def test_an_annotated_copy_is_none_of_the_diver(tmp_path, run):
     out = tmp_path / "out"
     assert run("decode", SAMPLE, "--annotate", "--out", out).status == ExitStatus.OK
-    check(run, next(out.glob("sample*.mp4")))
+    result = run("decode", next(out.glob("sample*.mp4")))
+    assert result.status == ExitStatus.SOME_FAILED
+    assert [line for line in result.err if "is an annotated copy; decode the video" in line]
 
 
 @pytest.mark.parametrize("suffix", ["png", "jpg", "tif", "webp", "bmp"])

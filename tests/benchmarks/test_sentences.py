@@ -2,8 +2,8 @@
 
 import pytest
 
-from lightgesture.benchmarks.sentence_damage import KINDS, Recorded, damage, pieces, read_ideally
-from lightgesture.benchmarks.sentences import damage_row, idle_row, measure, suite_row, time_row
+from lightgesture.benchmarks.decoder.damage import KINDS, Recorded, damage, pieces, read_ideally
+from lightgesture.benchmarks.decoder.sentences import damage_row, idle_row, measure, suite_row, time_row
 from lightgesture.fsm import Sign, Signs, load_grammar
 
 GRAMMAR = load_grammar()
@@ -65,8 +65,8 @@ def test_signs_that_are_read_without_doubt_are_never_corrected(clips, rule):
 
 
 def test_all_tables(clips, monkeypatch):
-    monkeypatch.setattr("lightgesture.benchmarks.sentences.IDLE_S", 5.0)
-    monkeypatch.setattr("lightgesture.benchmarks.sentences.CAUTIONS", (1.0,))
+    monkeypatch.setattr("lightgesture.benchmarks.decoder.sentences.IDLE_S", 5.0)
+    monkeypatch.setattr("lightgesture.benchmarks.decoder.sentences.CAUTIONS", (1.0,))
     tables = measure({("cnn", "sentence", 1): clips, ("cnn", "sentence", 3): clips}, 10)
     rows = {table.name: table.rows for table in tables}
     assert [row["fps"] for row in rows["sentences_suite"]] == [30.0, 10.0]

@@ -282,10 +282,24 @@ def test_an_open_sentence_times_out_and_ends_with_the_input(diver):
     assert (diver.decoder.state, diver.decoder.sentence) == ("idle", "")
 
 
-def test_what_was_too_weak_to_be_told_is_forgotten_in_time(diver):
-    diver.show(Signs(likely("0", 0.3), likely("0", 0.2)), 0.8)
-    diver.pause(30.0)
-    assert not any(diver.decoder._rule.search.readings)
+def rule_and_timeline(grammar):
+    """The rule by itself, without the decoder round it."""
+    timeline = Timeline()
+    reporter = Reporter(None, timeline)
+    reader = Reader(grammar, reporter, timeline)
+    return SentenceRule(grammar, grammar.sentence, reader, reporter, timeline), timeline
+
+
+def test_what_was_too_weak_to_be_told_is_forgotten_in_time(grammar):
+    rule, timeline = rule_and_timeline(grammar)
+    for frame in range(24):
+        rule.process(
+            Signs(likely("0", 0.3), likely("0", 0.2)), timeline.advance(frame / 30), 1 / 30 * (frame > 0)
+        )
+    assert any(rule.search.readings)
+    for frame in range(24, 924):
+        rule.process(Signs(), timeline.advance(frame / 30), 1 / 30)
+    assert not any(rule.search.readings)
 
 
 def test_a_word_that_opens_nothing_is_told(diver):
@@ -440,8 +454,7 @@ def test_frames_that_were_dropped_may_have_hidden_a_sign(diver):
 def test_memory_is_bounded_whatever_comes(grammar, rate):
     """An hour of one sign, held, and of random signs: no more readings, texts or rows than at the start."""
     rng = random.Random(1)
-    reporter = Reporter(None, timeline := Timeline())
-    rule = SentenceRule(grammar, grammar.sentence, Reader(grammar, reporter, timeline), reporter, timeline)
+    rule, timeline = rule_and_timeline(grammar)
     pair = ("0", "0")
     for frame in range(3000):
         if frame % 20 == 0:

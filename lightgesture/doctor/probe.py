@@ -13,7 +13,7 @@ from typing import Any
 FIRST = "first record"
 ONLY_FIRST = "--only-first"
 VIDEO_BACKENDS = ("FFMPEG", "GSTREAMER", "V4L2")
-"""What OpenCV reads with: video files and network streams, pipelines, cameras of Linux."""
+"""What OpenCV reads with: pipelines and cameras of Linux; files and network streams are read by PyAV."""
 KIB_PER_MIB = 1024
 
 

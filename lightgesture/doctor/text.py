@@ -49,7 +49,7 @@ def _extra(extra: Extra) -> str:
 
 def _findings(found: dict[str, Any]) -> Iterator[str]:
     able = ", ".join(f"{name} {'yes' if there else 'no'}" for name, there in found["video"].items())
-    yield _line("video", f"OpenCV reads with: {able}")
+    yield _line("video", f"files and network streams by PyAV; cameras and pipelines by OpenCV with: {able}")
     for name, reason in found["classifiers"].items():
         yield _line(f"model {name}", "works" if reason is None else reason)
     slower = (

@@ -222,7 +222,9 @@ def record_suite(
     """Every clip of the suite by model, rule and step."""
     takes = choose_takes([take for suite in SUITES for take in takes_of(suite, data)], (), is_quick)
     recorded: dict[tuple[str, Rule, int], list[Recorded]] = {}
-    pipelines = {(model, rule): Pipeline(model=model, rule=rule) for model in models for rule in RULES}
+    pipelines: dict[tuple[str, Rule], Pipeline] = {
+        (model, rule): Pipeline(model=model, rule=rule) for model in models for rule in RULES
+    }
     for clip in fetch_clips(takes, cache_folder()):
         say(clip.scenario.name)
         for (model, rule), pipeline in pipelines.items():

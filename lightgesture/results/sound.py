@@ -59,12 +59,13 @@ class SoundTrack:
     def add_to(self, container: "OutputContainer") -> None:
         """Begin a stream of sound in a file, if there is any. Before the first packet of it is written."""
         import av
+        import av.error
 
         if self._first is None or not self._first.streams.audio:
             return
         original, self._container = self._first.streams.audio[0], container
         codec = original.codec_context
-        with suppress(av.FFmpegError, ValueError, TypeError):
+        with suppress(av.error.FFmpegError, ValueError, TypeError):
             if codec.codec.canonical_name in COPIED:
                 self._output = container.add_stream_from_template(original)
                 self._packets = self._copied()
@@ -103,11 +104,12 @@ class SoundTrack:
 
     def _copied(self) -> Iterator[tuple[float, "Packet[Any]"]]:
         import av
+        import av.error
 
         last: int | None = None
         output: Any = self._output
         for container, shift_s in self._parts():
-            with suppress(av.FFmpegError):  # the sound ends where it is damaged
+            with suppress(av.error.FFmpegError):  # the sound ends where it is damaged
                 for packet in container.demux(container.streams.audio[0]):
                     if packet.dts is None or packet.pts is None or packet.time_base is None:
                         continue
@@ -122,20 +124,21 @@ class SoundTrack:
 
     def _encoded(self) -> Iterator[tuple[float, "Packet[Any]"]]:
         import av
+        import av.error
 
         output: Any = self._output
         encoder = output.codec_context
         rate = encoder.rate
         resampler = av.AudioResampler(encoder.format, encoder.layout, rate, frame_size=1024)
         for container, shift_s in self._parts():
-            with suppress(av.FFmpegError):
+            with suppress(av.error.FFmpegError):
                 for frame in container.decode(container.streams.audio[0]):
                     if frame.pts is None or frame.time_base is None:
                         continue
                     frame.pts += round(shift_s / frame.time_base)
                     for part in resampler.resample(frame):
                         yield from _timed(encoder.encode(part), output, rate)
-        with suppress(av.FFmpegError, ValueError):
+        with suppress(av.error.FFmpegError, ValueError):
             for part in resampler.resample(None):
                 yield from _timed(encoder.encode(part), output, rate)
             yield from _timed(encoder.encode(None), output, rate)
@@ -149,6 +152,7 @@ def _timed(packets: Sequence["Packet[Any]"], output: Any, rate: int) -> Iterator
 
 def _open(path: str) -> "InputContainer | None":
     import av
+    import av.error
 
     if not os.path.isfile(path):
         return None
@@ -156,5 +160,5 @@ def _open(path: str) -> "InputContainer | None":
         return av.open(
             os.path.abspath(path), options={"protocol_whitelist": "file"}, metadata_errors="replace"
         )
-    except (av.FFmpegError, ValueError, UnicodeError):
+    except (av.error.FFmpegError, ValueError, UnicodeError):
         return None

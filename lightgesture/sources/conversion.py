@@ -90,6 +90,7 @@ class Deinterlacer:
     def feed(self, frame: "VideoFrame") -> list["VideoFrame"]:
         """The frames that are done; the filter looks one frame ahead."""
         import av
+        import av.error
 
         if self._is_refused or (self._graph is None and not frame.interlaced_frame):
             return [frame]
@@ -101,7 +102,7 @@ class Deinterlacer:
                 self._graph, self._kind = _make_graph(frame), kind
             self._graph.vpush(frame)
             return done + self._pull()
-        except (av.FFmpegError, ValueError):
+        except (av.error.FFmpegError, ValueError):
             self._graph, self._is_refused = None, True
             return [*done, frame]
 
@@ -116,6 +117,7 @@ class Deinterlacer:
 
     def _pull(self) -> list["VideoFrame"]:
         import av
+        import av.error
 
         assert self._graph is not None
         done: list[VideoFrame] = []

@@ -83,7 +83,7 @@ class StreamDecoder:
     def pictures(self) -> Generator[Picture | None, None, None]:
         """All pictures; None after a packet that gave none, for callers who wait no longer than they want to.
 
-        av.FFmpegError: the container cannot be read on, by more than damage.
+        av.error.FFmpegError: the container cannot be read on, by more than damage.
         """
         for packet in self._packets():
             for frame in self.decode(packet):
@@ -95,6 +95,7 @@ class StreamDecoder:
     def _packets(self) -> Iterator["Packet[VideoStream] | None"]:
         """The packets with something in them; None last."""
         import av
+        import av.error
 
         failures = 0
         while True:
@@ -113,6 +114,7 @@ class StreamDecoder:
     def decode(self, packet: "Packet[VideoStream] | None") -> list["VideoFrame"]:
         """The frames that a packet completes; None: the end. What the decoder refuses is counted."""
         import av
+        import av.error
 
         decoder = self._stream.codec_context
         if self._lacks_order and packet is not None and packet.dts is not None:
@@ -125,7 +127,7 @@ class StreamDecoder:
             return decoder.decode(packet)
         except av.error.EOFError:
             decoder.flush_buffers()
-        except (av.FFmpegError, ValueError):
+        except (av.error.FFmpegError, ValueError):
             if packet is not None:
                 self._undecoded += 1
                 self._next_stamp()

@@ -146,8 +146,10 @@ class HttpStream(LiveSource):
 class _SameHost(urllib.request.HTTPRedirectHandler):
     """Follows redirections, and takes a login along to the same host only."""
 
-    def redirect_request(self, req: urllib.request.Request, *rest: Any) -> urllib.request.Request | None:
-        new = super().redirect_request(req, *rest)
+    def redirect_request(
+        self, req: urllib.request.Request, fp: Any, code: int, msg: str, headers: Any, newurl: str
+    ) -> urllib.request.Request | None:
+        new = super().redirect_request(req, fp, code, msg, headers, newurl)
         header = req.unredirected_hdrs.get(_LOGIN_HEADER)
         if new is not None and header is not None and _may_have_login(req.full_url, new.full_url):
             new.add_unredirected_header(_LOGIN_HEADER, header)

@@ -36,11 +36,12 @@ class NetworkStream(LiveSource):
 
     def __enter__(self) -> Self:
         import av
+        import av.error
 
         start_s = time.monotonic()
         try:
             self._container = self.open()
-        except (av.FFmpegError, ValueError) as error:
+        except (av.error.FFmpegError, ValueError) as error:
             # An interrupted FFmpeg gives many reasons, and this one never.
             reason = "timed out" if time.monotonic() - start_s >= types.TIMEOUT_S else _reason(error)
             raise InputError(
@@ -49,8 +50,9 @@ class NetworkStream(LiveSource):
         return self
 
     def open(self) -> "InputContainer":
-        """The container of the stream; av.FFmpegError or ValueError: it cannot be opened."""
+        """The container of the stream; av.error.FFmpegError or ValueError: it cannot be opened."""
         import av
+        import av.error
 
         return av.open(self._address, timeout=types.TIMEOUT_S, options=OPTIONS, metadata_errors="replace")
 
@@ -62,6 +64,7 @@ class NetworkStream(LiveSource):
 
     def __iter__(self) -> Iterator[Image]:
         import av
+        import av.error
 
         assert self._container is not None
         decoder = StreamDecoder(self._container, self._choose(self._container), self._tell)
@@ -77,7 +80,7 @@ class NetworkStream(LiveSource):
                     raise InputError(
                         f"{self.name}: sends data, but no picture for {types.NO_PICTURE_S:g} s: {reason}"
                     )
-        except av.FFmpegError as error:
+        except av.error.FFmpegError as error:
             raise InputError(f"{self.name}: broke off, or sends nothing more ({_reason(error)})") from None
         raise InputError(f"{self.name}: broke off, or sends nothing more")
 

@@ -33,6 +33,7 @@ class PacketDecoder:
 
     def __init__(self, format: str, tell: Callable[[str], None]) -> None:  # noqa: A002 - what messages call it
         import av
+        import av.error
         from av.video.codeccontext import VideoCodecContext
 
         name = next((codec for part, codec in _CODECS.items() if part in format.lower()), None)
@@ -47,23 +48,25 @@ class PacketDecoder:
     def feed(self, number: int, time_ns: int, data: NDArray[np.uint8]) -> list[tuple[Image, int]]:
         """The pictures that are whole now, in order, and their times. ValueError: the packet cannot be decoded."""
         import av
+        import av.error
 
         packet = av.Packet(data.tobytes())
         packet.pts = packet.dts = number
         self._pending[number] = time_ns
         try:
             return self._timed(self._context.decode(packet))
-        except (av.FFmpegError, ValueError) as error:
+        except (av.error.FFmpegError, ValueError) as error:
             self._pending.pop(number, None)
             raise ValueError(f"cannot be decoded ({reason_of(error)})") from None
 
     def flush(self) -> list[tuple[Image, int]]:
         """The pictures that the decoder still holds."""
         import av
+        import av.error
 
         try:
             return self._timed(self._context.decode(None))
-        except (av.FFmpegError, ValueError):
+        except (av.error.FFmpegError, ValueError):
             return []
 
     def _timed(self, frames: list["VideoFrame"]) -> list[tuple[Image, int]]:

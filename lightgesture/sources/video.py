@@ -109,10 +109,11 @@ class VideoFile(Source):
 
     def _read(self, last: Frame | None) -> Frame | None:
         import av
+        import av.error
 
         try:
             picture = next((one for one in self._pictures if one is not None), None)
-        except av.FFmpegError as error:
+        except av.error.FFmpegError as error:
             raise InputError(f"{self.name}: cannot be read on ({error.strerror}); copy it again") from None
         return None if picture is None else self._frame(picture, last)
 
@@ -182,13 +183,14 @@ class VideoFile(Source):
 
 def _open(path: str) -> "InputContainer":
     import av
+    import av.error
 
     try:
         # An absolute path, for FFmpeg would take the "take:1.mp4" of a relative one for a protocol.
         return av.open(
             os.path.abspath(path), options={"protocol_whitelist": "file"}, metadata_errors="replace"
         )
-    except (av.FFmpegError, ValueError, UnicodeError):
+    except (av.error.FFmpegError, ValueError, UnicodeError):
         raise InputError(
             f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
         ) from None

@@ -143,73 +143,70 @@ def time_row(clips: Sequence[Recorded], grammar: Grammar, rule: Rule, rounds: in
     }
 
 
+PARTS = tuple(suite for suite in SUITES if suite != NEGATIVE)
+DAMAGED_NOTE = "right: sound instructions that are left in them and were issued, of `valid`."
+TABLES: dict[str, tuple[str, tuple[str, ...], str]] = {
+    "suite": ("Instructions of the suite", ("model", "rule", "fps", *PARTS, "wrong"), ""),
+    "damaged": (
+        "Wrong instructions of sentences damaged on purpose",
+        ("model", "rule", "count", *KINDS, "wrong", "wrong_percent", "right", "valid"),
+        DAMAGED_NOTE,
+    ),
+    "caution": (
+        "What caution costs, rule sentence",
+        ("model", "caution", *PARTS, "wrong", "damaged_right", "damaged_wrong_percent"),
+        "",
+    ),
+    "idle": ("Idle hands", ("model", "rule", "hours", "instructions"), ""),
+    "time": ("Milliseconds a frame", ("model", "rule", "frames", "median_ms", "p95_ms", "p99_ms"), ""),
+    "blamed": (
+        "Damaged sentences that led to wrong ones",
+        ("model", "rule", "clip", "kind", "shown"),
+        "",
+    ),
+}
+"""Table -> its title, columns and note."""
+
+
 def measure(
     recorded: dict[tuple[str, Rule, int], list[Recorded]], count: int, seed: int = SEED
 ) -> list[Table]:
     """All tables. recorded: clips by model, rule and step; count: damaged sentences a model."""
     grammar = load_grammar()
-    suite: list[dict[str, Cell]] = []
+    rows: dict[str, list[dict[str, Cell]]] = {name: [] for name in TABLES}
     for (model, rule, every), clips in recorded.items():
-        suite.append({"model": model, "rule": rule, "fps": FPS / every, **suite_row(clips, grammar, rule)})
-    damaged: list[dict[str, Cell]] = []
-    curve: list[dict[str, Cell]] = []
-    idle: list[dict[str, Cell]] = []
-    times: list[dict[str, Cell]] = []
-    blamed: list[dict[str, Cell]] = []
-    for (model, rule, every), clips in recorded.items():
+        key: dict[str, Cell] = {"model": model, "rule": rule}
+        rows["suite"].append({**key, "fps": FPS / every, **suite_row(clips, grammar, rule)})
         if every != 1:
             continue
-        key: dict[str, Cell] = {"model": model, "rule": rule}
         made = damage(clips, count, grammar, seed)
         row, items = damage_row(made, grammar, rule)
-        damaged.append({**key, **row})
-        blamed += [{**key, "clip": item.name, "kind": item.kind, "shown": _shown(item)} for item in items]
-        idle.append({**key, **idle_row(clips, grammar, rule)})
-        times.append({**key, **time_row(clips[::4], grammar, rule)})
+        rows["damaged"].append({**key, "count": count, **row})
+        rows["blamed"] += [
+            {**key, "clip": item.name, "kind": item.kind, "shown": _shown(item)} for item in items
+        ]
+        rows["idle"].append({**key, **idle_row(clips, grammar, rule)})
+        rows["time"].append({**key, **time_row(clips[::4], grammar, rule)})
         if rule == "sentence":
-            for caution in CAUTIONS:
-                whole, _ = damage_row(made, grammar, rule, caution)
-                parts = suite_row(clips, grammar, rule, caution)
-                damaged_row: dict[str, Cell] = {
-                    "damaged_right": whole["right"],
-                    "damaged_wrong_percent": whole["wrong_percent"],
-                }
-                curve.append({"model": model, "caution": caution, **parts, **damaged_row})
-    parts_of_suite = tuple(suite for suite in SUITES if suite != NEGATIVE)
+            rows["caution"] += [{"model": model, **one} for one in caution_rows(clips, made, grammar)]
     return [
-        Table(
-            "sentences_suite",
-            "Instructions of the suite",
-            ("model", "rule", "fps", *parts_of_suite, "wrong"),
-            tuple(suite),
-        ),
-        Table(
-            "sentences_damaged",
-            f"Wrong instructions of {count} sentences damaged on purpose",
-            ("model", "rule", *KINDS, "wrong", "wrong_percent", "right", "valid"),
-            tuple(damaged),
-            "right: sound instructions that are left in them and were issued, of `valid`.",
-        ),
-        Table(
-            "sentences_caution",
-            "What caution costs, rule sentence",
-            ("model", "caution", *parts_of_suite, "wrong", "damaged_right", "damaged_wrong_percent"),
-            tuple(curve),
-        ),
-        Table("sentences_idle", "Idle hands", ("model", "rule", "hours", "instructions"), tuple(idle)),
-        Table(
-            "sentences_time",
-            "Milliseconds a frame",
-            ("model", "rule", "frames", "median_ms", "p95_ms", "p99_ms"),
-            tuple(times),
-        ),
-        Table(
-            "sentences_blamed",
-            "Damaged sentences that led to wrong ones",
-            ("model", "rule", "clip", "kind", "shown"),
-            tuple(blamed),
-        ),
+        Table(f"sentences_{name}", title, columns, tuple(rows[name]), note)
+        for name, (title, columns, note) in TABLES.items()
     ]
+
+
+def caution_rows(
+    clips: Sequence[Recorded], made: Sequence[Damaged], grammar: Grammar
+) -> Iterable[dict[str, Cell]]:
+    """What each caution issues of the clips and of what was damaged in them, by the rule sentence."""
+    for caution in CAUTIONS:
+        whole, _ = damage_row(made, grammar, "sentence", caution)
+        yield {
+            "caution": caution,
+            **suite_row(clips, grammar, "sentence", caution),
+            "damaged_right": whole["right"],
+            "damaged_wrong_percent": whole["wrong_percent"],
+        }
 
 
 def _shown(item: Damaged) -> str:

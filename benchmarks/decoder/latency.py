@@ -39,29 +39,29 @@ BUSY = "while True: pass"
 class Shown(NamedTuple):
     """One frame. kind: no hands in view, a sign that is held or on its way, or the frame that makes it a word."""
 
-    left: str | None
-    right: str | None
-    is_seen: bool
+    signs: Signs
     kind: str
 
 
 def recorded(hold: int = 15) -> list[Shown]:
     """The frames of the sentences."""
+    away = Shown(Signs(), IDLE)
+    passing = Shown(Signs(Sign(None, 0.9), Sign(None, 0.95)), COLLECTING)
     frames: list[Shown] = []
     for sentence in SIGNED:
-        frames += [Shown(None, None, False, IDLE)] * PAUSE
+        frames += [away] * PAUSE
         for pair in sentence.split():
             left, right = pair.split(",")
-            frames += [Shown(None, None, True, COLLECTING)] * PASSAGE
+            frames += [passing] * PASSAGE
             for frame in range(HELD):
-                frames.append(Shown(left, right, True, ACCEPTING if frame == hold - 1 else COLLECTING))
+                signs = Signs(Sign(left, 0.9), Sign(right, 0.95))
+                frames.append(Shown(signs, ACCEPTING if frame == hold - 1 else COLLECTING))
     return frames
 
 
 def arguments(shown: Shown, frame: int) -> Arguments:
     """What the pipeline calls the decoder with; made before the clock starts."""
-    left, right = Sign(shown.left, 0.9, seen=shown.is_seen), Sign(shown.right, 0.95, seen=shown.is_seen)
-    return Signs(left, right), frame / RATE, frame
+    return shown.signs, frame / RATE, frame
 
 
 def our_step(grammar: Grammar) -> Step:

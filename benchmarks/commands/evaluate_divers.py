@@ -1,0 +1,74 @@
+"""`lightgesture evaluate divers`: real divers' hands, found and read in whole pictures and in given boxes."""
+
+import argparse
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lightgesture.benchmarks.progress import Progress
+from lightgesture.errors import InputError, UsageError
+
+if TYPE_CHECKING:
+    from lightgesture.benchmarks.accuracy import Report
+    from lightgesture.benchmarks.divers.scoring import DiverMethod
+    from lightgesture.models import Classifier
+
+OPTIONS = ("place", "dive", "join")
+"""Options that only this target has."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of this target."""
+    for name, text in (("place", "places"), ("dive", "dives")):
+        parser.add_argument(
+            f"--{name}",
+            action="append",
+            metavar="NAME",
+            help=f"with divers: only pictures of these {text}, such as those that a model was trained without "
+            "(repeatable)",
+        )
+    parser.add_argument(
+        "--join",
+        action="append",
+        metavar="DIR",
+        help="with divers: score nothing, but print the tables of several runs together, each of other places or "
+        "dives, from what they wrote with --out (repeatable)",
+    )
+
+
+def find_and_read(
+    args: argparse.Namespace, models: "Mapping[str, Classifier]", progress: Progress
+) -> "tuple[Report, list[Path]]":
+    """The report, and the files of rows that were written. UsageError: a selector cannot be used."""
+    from lightgesture.benchmarks.divers import report as divers
+    from lightgesture.benchmarks.divers.pictures import TABLE, choose_frames, read_divers
+    from lightgesture.features.find.selector_file import SelectorError
+    from lightgesture.training.datasets import find_data
+
+    if args.join:
+        return divers.joined([Path(folder) for folder in args.join]), []
+    data = find_data(args.data)
+    if not (data / TABLE).is_file():
+        raise InputError(f"{data}: holds no pictures for divers; see --data")
+    frames = choose_frames(read_divers(data), args.place or (), args.dive or ())
+    try:
+        methods = list(named_methods(models, args.selector))
+    except SelectorError as error:
+        raise UsageError(str(error)) from error
+    report, scored = divers.evaluate_divers(methods, frames, progress)
+    written = divers.save_rows(Path(args.out), scored.hands, scored.frames) if args.out else []
+    return report, written
+
+
+def named_methods(
+    models: "Mapping[str, Classifier]", selectors: "list[str] | None"
+) -> "Iterator[DiverMethod]":
+    """Every model with every selector, a name or a file. Raises SelectorError."""
+    from lightgesture.benchmarks.divers.scoring import DiverMethod
+    from lightgesture.benchmarks.methods import reading_method
+    from lightgesture.features.find.selector import SELECTORS
+
+    for model, classifier in models.items():
+        for selector in selectors or SELECTORS[:1]:
+            name = model if selector == SELECTORS[0] else f"{model}, {selector}"
+            yield DiverMethod(name, reading_method(name, classifier, selector), classifier)

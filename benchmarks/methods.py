@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture import models
 from lightgesture.benchmarks.paper.bank import HandBank
 from lightgesture.benchmarks.paper.chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
@@ -102,7 +103,7 @@ def product(model: str, selector: SelectorName = SELECTORS[0]) -> PipelineMethod
     return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, hold=hold))
 
 
-def reading_method(name: str, classifier: Classifier, selector: str = SELECTORS[0]) -> PipelineMethod:
+def reading_method(name: str, classifier: models.Classifier, selector: str = SELECTORS[0]) -> PipelineMethod:
     """The product with a classifier that is open, and a selector by name or by its file, whose learned choice is taken.
 
     Raises lightgesture.features.find.selector_file.SelectorError.

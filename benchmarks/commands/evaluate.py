@@ -26,11 +26,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "target",
         nargs="?",
-        choices=TARGETS,
+        metavar="|".join(TARGETS) + "|DIR",
         help="hands: the classifier in given boxes; regions: hands found in whole frames and, with --model, read; "
         "divers: real divers' hands, found and read in whole pictures and in given boxes; suite: the whole chain on "
-        "signed clips that are rendered here and cached, which takes long at first (default: hands and regions with a "
-        "model, as far as the data folder allows)",
+        "signed clips that are rendered here and cached, which takes long at first; DIR: with --format, a public set "
+        "(default: hands and regions with a model, as far as the data folder allows)",
     )
     parser.add_argument(
         "--data",
@@ -46,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     evaluate_regions.add_arguments(parser)
     evaluate_divers.add_arguments(parser)
+    evaluate_divers.add_public_arguments(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
     parser.add_argument(
         "--only",
@@ -67,25 +68,41 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.config.opening import make_folder
     from lightgesture.pipeline import OneBlasThread
 
-    if args.target != SUITE and (args.only or (args.quick and not args.clips)):
-        raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
-    for option in evaluate_regions.OPTIONS:
-        is_fitting = args.target == REGIONS or (args.target in (DIVERS, SUITE) and option == "selector")
-        if getattr(args, option) and not is_fitting:
-            raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
-    for option in evaluate_divers.OPTIONS:
-        if getattr(args, option) and args.target != DIVERS:
-            raise UsageError(f"--{option} is about real divers; name the target: evaluate divers")
-    if args.target not in (HANDS, DIVERS) and len(args.model or ()) > 1:
-        raise UsageError("several --model are compared in given boxes only; name the target: evaluate hands")
+    refuse_misplaced(args)
     if args.jobs < 1:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
     with native_messages_muted(), OneBlasThread().block():
-        if args.target == DIVERS:
+        if args.format or args.target == DIVERS:
             return run_divers(args)
         return run_suite(args) if args.target == SUITE else run_pictures(args)
+
+
+def refuse_misplaced(args: argparse.Namespace) -> None:
+    """UsageError: there is no such target, or an option is not of it."""
+    is_of_divers = args.target == DIVERS or args.format is not None
+    if args.format is None and args.target not in (None, *TARGETS):
+        raise UsageError(
+            f"{args.target}: no such target; name {', '.join(TARGETS)}, or a folder with --format"
+        )
+    if args.format is not None and args.target is None:
+        raise UsageError(
+            "--format tells how a public set is read; name its folder too: evaluate DIR --format ..."
+        )
+    if args.target != SUITE and (args.only or (args.quick and not args.clips)):
+        raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
+    for option in evaluate_regions.OPTIONS:
+        is_fitting = args.target == REGIONS or (
+            option == "selector" and (is_of_divers or args.target == SUITE)
+        )
+        if getattr(args, option) and not is_fitting:
+            raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
+    for option in evaluate_divers.OPTIONS:
+        if getattr(args, option) and not is_of_divers:
+            raise UsageError(f"--{option} is about real divers; name the target: evaluate divers")
+    if args.target != HANDS and not is_of_divers and len(args.model or ()) > 1:
+        raise UsageError("several --model are compared in given boxes only; name the target: evaluate hands")
 
 
 def run_divers(args: argparse.Namespace) -> int:

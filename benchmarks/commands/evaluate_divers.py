@@ -6,15 +6,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lightgesture.benchmarks.progress import Progress
+from lightgesture.config.parsers import positive
+from lightgesture.console import say
 from lightgesture.errors import InputError, UsageError
 
 if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
+    from lightgesture.benchmarks.divers.pictures import DiverFrame
     from lightgesture.benchmarks.divers.scoring import DiverMethod
     from lightgesture.models import Classifier
 
-OPTIONS = ("place", "dive", "join")
-"""Options that only this target has."""
+OPTIONS = ("place", "dive", "join", "most")
+"""Options that only this target, and public sets, have."""
+
+FORMATS = ("scubanet", "caddy", "hagrid")
+"""Those of `benchmarks.public.registry`, which is not imported before it is needed."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f"--{name}",
             action="append",
             metavar="NAME",
-            help=f"with divers: only pictures of these {text}, such as those that a model was trained without "
-            "(repeatable)",
+            help=f"with divers and --format: only pictures of these {text}, such as those that a model was trained "
+            "without (repeatable)",
         )
     parser.add_argument(
         "--join",
@@ -36,21 +42,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_public_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of public sets."""
+    parser.add_argument(
+        "--format",
+        choices=FORMATS,
+        help="the target is the folder of a public set in its published form, which gives the tables of divers",
+    )
+    parser.add_argument(
+        "--most",
+        type=positive,
+        metavar="N",
+        help="with divers and --format: at most N pictures, evenly spread",
+    )
+
+
 def find_and_read(
     args: argparse.Namespace, models: "Mapping[str, Classifier]", progress: Progress
 ) -> "tuple[Report, list[Path]]":
     """The report, and the files of rows that were written. UsageError: a selector cannot be used."""
     from lightgesture.benchmarks.divers import report as divers
-    from lightgesture.benchmarks.divers.pictures import TABLE, choose_frames, read_divers
     from lightgesture.features.find.selector_file import SelectorError
-    from lightgesture.training.datasets import find_data
 
     if args.join:
         return divers.joined([Path(folder) for folder in args.join]), []
-    data = find_data(args.data)
-    if not (data / TABLE).is_file():
-        raise InputError(f"{data}: holds no pictures for divers; see --data")
-    frames = choose_frames(read_divers(data), args.place or (), args.dive or ())
+    frames = _frames(args)
     try:
         methods = list(named_methods(models, args.selector))
     except SelectorError as error:
@@ -58,6 +74,22 @@ def find_and_read(
     report, scored = divers.evaluate_divers(methods, frames, progress)
     written = divers.save_rows(Path(args.out), scored.hands, scored.frames) if args.out else []
     return report, written
+
+
+def _frames(args: argparse.Namespace) -> "list[DiverFrame]":
+    """The pictures that were asked for, of the data folder or of a public set."""
+    from lightgesture.benchmarks.divers.pictures import TABLE, choose_frames, read_divers, spread
+    from lightgesture.benchmarks.public.registry import read_public
+    from lightgesture.training.datasets import find_data
+
+    if args.format:
+        frames = read_public(Path(args.target), args.format, say)
+    else:
+        data = find_data(args.data)
+        if not (data / TABLE).is_file():
+            raise InputError(f"{data}: holds no pictures for divers; see --data")
+        frames = read_divers(data)
+    return spread(choose_frames(frames, args.place or (), args.dive or ()), args.most)
 
 
 def named_methods(

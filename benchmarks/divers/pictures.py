@@ -5,7 +5,7 @@ The table of the data folder, `divers/boxes.csv`, is read here; the readers of p
 
 from collections import defaultdict
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 
 from lightgesture.errors import InputError, UsageError
@@ -22,21 +22,28 @@ TOKENS = frozenset(CLASSES) - {NONE}
 """Shapes that are signs of the language; all others must not be read as one."""
 
 GIVEN_MARGIN = -0.04
-"""By how much of its side a labelled box is grown on each side before it is read: people draw boxes of divers' hands
-generously, and 0.92 of the side is the outline (design trials; 0.75 to 1.1 changed nothing)."""
+"""Of `DiverHand.margin` for pictures of divers: their hands were boxed generously, and 0.92 of the side is the outline
+(design trials; 0.75 to 1.1 changed nothing)."""
 
 
 @dataclass(frozen=True, slots=True)
 class DiverHand:
     """One labelled hand. shape: a token, another word for what it shows, None where the set does not say.
 
-    box: as labelled, pixels. glove: "bare", "glove" or "?". view: "palm", "back", "side" or "?".
+    box: as labelled, pixels. glove: "bare", "glove" or "?". view: "palm", "back", "side" or "?". margin: by how much of
+    its side the box is grown on each side before it is read.
     """
 
     box: Box
     shape: str | None = None
     glove: str = "?"
     view: str = "?"
+    margin: float = GIVEN_MARGIN
+
+    @property
+    def may_be_sign(self) -> bool:
+        """Whether a token that is read there may be right."""
+        return self.shape is None or self.is_sign
 
     @property
     def is_sign(self) -> bool:
@@ -47,12 +54,15 @@ class DiverHand:
     def outline(self) -> Box:
         """The box that is given to a classifier."""
         x, y, width, height = self.box
-        return grow_box(x, y, x + width, y + height, GIVEN_MARGIN)
+        return grow_box(x, y, x + width, y + height, self.margin)
 
 
 @dataclass(frozen=True, slots=True)
 class DiverFrame:
-    """One picture. file: its name in tables. place, dive: what may be held out as a whole. heads, bodies: of divers."""
+    """One picture. file: its name in tables. place, dive: what may be held out as a whole. heads, bodies: of divers.
+
+    parts: into how many parts the picture's sides are divided, where the boxes are no pixels.
+    """
 
     path: Path
     file: str
@@ -61,6 +71,25 @@ class DiverFrame:
     hands: tuple[DiverHand, ...]
     heads: tuple[Box, ...] = ()
     bodies: tuple[Box, ...] = ()
+    parts: int | None = None
+
+    def in_pixels(self, width: int, height: int) -> "DiverFrame":
+        """The same with boxes in pixels of a picture of that size."""
+        if self.parts is None:
+            return self
+        across, down = width / self.parts, height / self.parts
+
+        def scaled(box: Box) -> Box:
+            x, y, wide, high = box
+            return grow_box(across * x, down * y, across * (x + wide), down * (y + high), 0.0)
+
+        return replace(
+            self,
+            hands=tuple(replace(hand, box=scaled(hand.box)) for hand in self.hands),
+            heads=tuple(map(scaled, self.heads)),
+            bodies=tuple(map(scaled, self.bodies)),
+            parts=None,
+        )
 
 
 def read_divers(data: Path) -> list[DiverFrame]:
@@ -85,8 +114,8 @@ def _frame(folder: Path, file: str, rows: Sequence[dict[str, str]]) -> DiverFram
             continue
         box = _box(row)
         if row["kind"] == "hand":
-            known = {name: row[name] or "?" for name in ("glove", "view") if name in row}
-            hands.append(DiverHand(box, row.get("shape") or None, **known))
+            glove, view = row.get("glove") or "?", row.get("view") or "?"
+            hands.append(DiverHand(box, row.get("shape") or None, glove, view))
         else:
             boxes[row["kind"]].append(box)
     return DiverFrame(
@@ -123,6 +152,14 @@ def choose_frames(
     if not places and not dives:
         return list(frames)
     return [frame for frame in frames if frame.place in places or frame.dive in dives]
+
+
+def spread(frames: Sequence[DiverFrame], most: int | None) -> list[DiverFrame]:
+    """At most so many frames, evenly spread; None for all."""
+    count = len(frames)
+    if most is None or count <= most:
+        return list(frames)
+    return [frames[index * count // most] for index in range(most)]
 
 
 def side_of(hand: DiverHand, frame: DiverFrame, width: int) -> str:

@@ -47,8 +47,20 @@ def report_of(scored: Scored, frames: Sequence[DiverFrame]) -> Report:
         given = [row for row in signs if row.given_token != row.shape]
         failures |= _sheets("missed", method, [_missed(row, by_file[row.file], scored) for row in whole])
         failures |= _sheets("given", method, [_given(row, by_file[row.file]) for row in given])
+    labels: dict[tuple[str, str], list[Label]] = {}
+    for row in scored.hands:
+        labels.setdefault((row.method, row.file), []).append(_label(row))
     for method, rows in by_method(scored.frames).items():
-        stray = [_stray(row, by_file[row.file], scored) for row in rows if row.stray]
+        stray = [
+            Failure(
+                by_file[row.file].path,
+                tuple(labels.get((method, row.file), ())),
+                scored.readings[method, row.file],
+                Path(row.file).name,
+            )
+            for row in rows
+            if row.stray
+        ]
         failures |= _sheets("stray", method, stray)
     return Report(tuple(diver_tables(scored.hands, scored.frames)), failures)
 
@@ -109,11 +121,6 @@ def _given(row: HandRow, frame: DiverFrame) -> Failure:
     return Failure(
         frame.path, (_label(row),), (Reading((x, y, width, height), row.side, text),), _caption(row)
     )
-
-
-def _stray(row: FrameRow, frame: DiverFrame, scored: Scored) -> Failure:
-    labels = tuple(Label(hand.box, None, hand.shape) for hand in frame.hands)
-    return Failure(frame.path, labels, scored.readings[row.method, row.file], Path(row.file).name)
 
 
 def _label(row: HandRow) -> Label:

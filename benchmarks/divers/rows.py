@@ -54,7 +54,7 @@ class FrameRow:
     """One frame, and what a method found in all of it.
 
     hands, signs: labelled ones, and those of them that show a token. found: boxes, two at most. tokens: read, with a
-    space between them. stray: tokens that were read elsewhere than on a shown sign.
+    space between them. stray: of these, on nothing that may be a sign: elsewhere, or on a hand that shows none.
     """
 
     method: str

@@ -55,9 +55,10 @@ def score_divers(
     hands: list[HandRow] = []
     rows: list[FrameRow] = []
     readings: dict[tuple[str, str], tuple[Reading, ...]] = {}
-    for frame in frames:
-        image = read(frame)
-        width = image.shape[1]
+    for labelled in frames:
+        image = read(labelled)
+        height, width = image.shape[:2]
+        frame = labelled.in_pixels(width, height)
         sides = [side_of(hand, frame, width) for hand in frame.hands]
         measured = [
             (size_at_reference(hand.box, width), contrast(image, hand.outline)) for hand in frame.hands
@@ -116,11 +117,11 @@ def _frame_row(
     method: str, frame: DiverFrame, hands: Sequence[HandRow], found: Sequence[Reading]
 ) -> FrameRow:
     tokens = [reading.token for reading in found if reading.token]
-    on_signs = sum(
-        bool(row.found_token) for row, hand in zip(hands, frame.hands, strict=True) if hand.is_sign
+    on_hands = sum(
+        bool(row.found_token) for row, hand in zip(hands, frame.hands, strict=True) if hand.may_be_sign
     )
     return FrameRow(
         method,
         *(frame.file, frame.place, frame.dive, len(frame.hands), sum(hand.is_sign for hand in frame.hands)),
-        *(len(found), " ".join(tokens), len(tokens) - on_signs),
+        *(len(found), " ".join(tokens), len(tokens) - on_hands),
     )

@@ -15,16 +15,20 @@ CONTRASTS = (8.0, 16.0, 24.0)
 """Bounds of the groups by contrast, CIE76."""
 
 ALL = "all"
+UNTOLD = "not told"
+"""Shape of hands of sets that do not say what they show."""
 SIGN_AXES = (ALL, "glove", "place", "size", "contrast", "view", "token")
-OTHER_AXES = (ALL, "glove", "shape")
+OTHER_AXES = (ALL, "glove", "place", "shape")
 """By what shown signs, and hands that show none, are told apart."""
 
 
 def group_of(row: HandRow, axis: str) -> str:
     """The group of a hand along one of the axes."""
     match axis:
-        case "glove" | "place" | "view" | "shape":
+        case "glove" | "place" | "view":
             return str(getattr(row, axis))
+        case "shape":
+            return row.shape or UNTOLD
         case "token":
             return row.shape
         case "size":
@@ -81,7 +85,7 @@ def signs_table(hands: Sequence[HandRow]) -> Table:
         f"{ReadingSettings().token_probability}. size: pixels at 640 wide; contrast: of the hand's middle with what "
         "is around it, CIE76."
     )
-    return Table("divers_signs", "Signs that divers show", columns, tuple(rows), note)
+    return Table("signs", "Shown signs", columns, tuple(rows), note)
 
 
 def sign_cells(rows: Sequence[HandRow]) -> dict[str, Cell]:
@@ -109,15 +113,18 @@ def sign_cells(rows: Sequence[HandRow]) -> dict[str, Cell]:
 
 
 def others_table(hands: Sequence[HandRow]) -> Table:
-    """Hands that show no sign of the language, by what they do show: none of them may get a token."""
+    """Hands that show no sign of the language, by what they do show: none of them may get a token; and those of sets
+    that do not say."""
     rows: list[dict[str, Cell]] = []
     for method, own in by_method(hands).items():
         signs = [row for row in own if row.shape in TOKENS]
-        others = [row for row in own if row.shape and row.shape not in TOKENS]
+        others = [row for row in own if row.shape not in TOKENS]
         for axis in OTHER_AXES:
             for name in sorted({group_of(row, axis) for row in others}):
                 members = [row for row in others if group_of(row, axis) == name]
-                against = [row for row in signs if axis != "glove" or row.glove == name]
+                against = [
+                    row for row in signs if axis not in ("glove", "place") or group_of(row, axis) == name
+                ]
                 rows.append({"by": axis, "group": name, "method": method, **_other_cells(members, against)})
     columns = (
         *("by", "group", "method", "hands", "found", "found_share", "token", "given_token"),
@@ -125,9 +132,15 @@ def others_table(hands: Sequence[HandRow]) -> Table:
     )
     note = (
         "token, given_token: hands that got a token in whole frames and in given boxes; none_auroc: P(none) of these "
-        "hands against\nthat of shown signs (by glove: of the same)."
+        "hands against\nthat of shown signs (by glove and place: of the same)."
     )
-    return Table("divers_others", "Hands of divers that show no sign", columns, tuple(rows), note)
+    return Table(
+        "other_hands",
+        "Hands that show no sign, or of which nobody says what they show",
+        columns,
+        tuple(rows),
+        note,
+    )
 
 
 def _other_cells(rows: Sequence[HandRow], signs: Sequence[HandRow]) -> dict[str, Cell]:
@@ -162,7 +175,7 @@ def stray_table(frames: Sequence[FrameRow]) -> Table:
         "frames: those in which no sign is shown, and of them those in which a hand was found, a token was read, two "
         "were read;\nsign_frames: those in which one is, and of them those with a token read elsewhere than on it."
     )
-    return Table("divers_stray", "Tokens where divers show none", columns, tuple(rows), note)
+    return Table("stray", "Tokens where none is shown", columns, tuple(rows), note)
 
 
 def _stray_cells(frames: Sequence[FrameRow], place: str) -> dict[str, Cell]:
@@ -172,8 +185,8 @@ def _stray_cells(frames: Sequence[FrameRow], place: str) -> dict[str, Cell]:
     return {
         "frames": len(idle),
         "any_hand": sum(row.found > 0 for row in idle),
-        "any_token": sum(bool(row.tokens) for row in idle),
-        "two_tokens": sum(len(row.tokens.split()) > 1 for row in idle),
+        "any_token": sum(row.stray > 0 for row in idle),
+        "two_tokens": sum(row.stray > 1 for row in idle),
         "sign_frames": len(signed),
         "stray_frames": sum(row.stray > 0 for row in signed),
     }

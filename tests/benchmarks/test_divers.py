@@ -207,7 +207,7 @@ def told(capsys, table):
 
 def test_models_and_selectors_stand_side_by_side(command, capsys):
     assert command("--json", "--model", "cnn", "--model", "svm", "--selector", "my.npz") == 0
-    rows = told(capsys, "divers_signs")
+    rows = told(capsys, "signs")
     assert [row["method"] for row in rows if row["by"] == "all"] == ["cnn, my.npz", "svm, my.npz"]
 
 
@@ -222,12 +222,12 @@ def test_sheets_and_rows_are_written(command, tmp_path, capsys):
 
 def test_runs_on_other_dives_are_put_together(command, tmp_path, capsys):
     command("--json")
-    whole = told(capsys, "divers_signs")
+    whole = told(capsys, "signs")
     command("--place", "reef", "--out", tmp_path / "1", "--model", "a.npz")
     command("--dive", "pool_1", "--out", tmp_path / "2", "--model", "b.npz")
     capsys.readouterr()
     assert command("--json", "--join", tmp_path / "1", "--join", tmp_path / "2") == 0
-    assert told(capsys, "divers_signs") == [{**row, "method": "joined"} for row in whole]
+    assert told(capsys, "signs") == [{**row, "method": "joined"} for row in whole]
     with pytest.raises(InputError, match=r"stands in .*1 and in .*1"):
         command("--join", tmp_path / "1", "--join", tmp_path / "1")
 

@@ -148,7 +148,8 @@ def test_a_kept_pool_stands_beside_real_hands(divers, tmp_path, capsys):
     assert means["bare sign"]["apart_bare"] == 0.0
     assert means["copies"]["apart_glove"] > 0
     assert means["copies"]["real"] == "no"
-    drawn = cv2.imread(str(out / "look.png"))
+    drawn = cv2.imdecode(np.frombuffer((out / "look.png").read_bytes(), np.uint8), cv2.IMREAD_COLOR)
+    assert drawn is not None
     assert drawn.shape == (4 * (16 + 3 * 96), 2 * 12 * 96 + 8, 3)
 
 

@@ -71,7 +71,7 @@ def find_and_read(
         methods = list(named_methods(models, args.selector))
     except SelectorError as error:
         raise UsageError(str(error)) from error
-    report, scored = divers.evaluate_divers(methods, frames, progress)
+    report, scored = divers.evaluate_divers(methods, frames, progress, args.out is not None)
     written = divers.save_rows(Path(args.out), scored.hands, scored.frames) if args.out else []
     return report, written
 

@@ -7,12 +7,16 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
+from typing import TypeVar
 
+from lightgesture.benchmarks.contact_sheet import choose_evenly
 from lightgesture.errors import InputError, UsageError
 from lightgesture.features.types import Box
 from lightgesture.models import CLASSES, NONE
 from lightgesture.training.datasets import grow_box
 from lightgesture.training.tables import table_rows
+
+Item = TypeVar("Item")
 
 TABLE = Path("divers") / "boxes.csv"
 COLUMNS = ("file", "sequence")
@@ -154,12 +158,9 @@ def choose_frames(
     return [frame for frame in frames if frame.place in places or frame.dive in dives]
 
 
-def spread(frames: Sequence[DiverFrame], most: int | None) -> list[DiverFrame]:
-    """At most so many frames, evenly spread; None for all."""
-    count = len(frames)
-    if most is None or count <= most:
-        return list(frames)
-    return [frames[index * count // most] for index in range(most)]
+def spread(items: Sequence[Item], most: int | None) -> list[Item]:
+    """At most so many of the items, evenly spread; None for all."""
+    return list(items) if most is None else [items[index] for index in choose_evenly(len(items), most)]
 
 
 def side_of(hand: DiverHand, frame: DiverFrame, width: int) -> str:

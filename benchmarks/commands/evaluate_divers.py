@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from lightgesture.benchmarks.accuracy import Report
     from lightgesture.benchmarks.divers.pictures import DiverFrame
     from lightgesture.benchmarks.divers.scoring import DiverMethod
+    from lightgesture.features.profile import ColourProfile
     from lightgesture.models import Classifier
 
-OPTIONS = ("place", "dive", "join", "most")
+OPTIONS = ("place", "dive", "join", "most", "profile")
 """Options that only this target, and public sets, have."""
 
 FORMATS = ("scubanet", "caddy", "hagrid")
@@ -33,6 +34,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             help=f"with divers and --format: only pictures of these {text}, such as those that a model was trained "
             "without (repeatable)",
         )
+    parser.add_argument(
+        "--profile",
+        metavar="FILE",
+        help="with divers and --format: score every selector with this colour profile of calibrate, too",
+    )
     parser.add_argument(
         "--join",
         action="append",
@@ -60,16 +66,18 @@ def add_public_arguments(parser: argparse.ArgumentParser) -> None:
 def find_and_read(
     args: argparse.Namespace, models: "Mapping[str, Classifier]", progress: Progress
 ) -> "tuple[Report, list[Path]]":
-    """The report, and the files of rows that were written. UsageError: a selector cannot be used."""
+    """The report, and the files of rows that were written. UsageError: a selector or a profile cannot be used."""
     from lightgesture.benchmarks.divers import report as divers
     from lightgesture.features.find.selector_file import SelectorError
+    from lightgesture.features.profile import ProfileError, load_profile
 
     if args.join:
         return divers.joined([Path(folder) for folder in args.join]), []
     frames = _frames(args)
     try:
-        methods = list(named_methods(models, args.selector))
-    except SelectorError as error:
+        profile = load_profile(args.profile) if args.profile else None
+        methods = list(named_methods(models, args.selector, profile))
+    except (SelectorError, ProfileError) as error:
         raise UsageError(str(error)) from error
     report, scored = divers.evaluate_divers(methods, frames, progress, args.out is not None)
     written = divers.save_rows(Path(args.out), scored.hands, scored.frames) if args.out else []
@@ -93,9 +101,9 @@ def _frames(args: argparse.Namespace) -> "list[DiverFrame]":
 
 
 def named_methods(
-    models: "Mapping[str, Classifier]", selectors: "list[str] | None"
+    models: "Mapping[str, Classifier]", selectors: "list[str] | None", profile: "ColourProfile | None" = None
 ) -> "Iterator[DiverMethod]":
-    """Every model with every selector, a name or a file. Raises SelectorError."""
+    """Every model with every selector, a name or a file, and again with the profile. Raises SelectorError."""
     from lightgesture.benchmarks.divers.scoring import DiverMethod
     from lightgesture.benchmarks.methods import reading_method
     from lightgesture.features.find.selector import SELECTORS
@@ -104,3 +112,6 @@ def named_methods(
         for selector in selectors or SELECTORS[:1]:
             name = model if selector == SELECTORS[0] else f"{model}, {selector}"
             yield DiverMethod(name, reading_method(name, classifier, selector), classifier)
+            if profile is not None:
+                name = f"{name}, profile"
+                yield DiverMethod(name, reading_method(name, classifier, selector, profile), classifier)

@@ -19,6 +19,8 @@ from lightgesture.benchmarks.divers.scoring import DiverMethod, score_divers
 from lightgesture.benchmarks.divers.tables import bin_name, diver_tables
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.errors import InputError, UsageError
+from lightgesture.features.profile import save_profile
+from lightgesture.features.profile_learning import learn_profile
 
 HEADER = ("file", "sequence", "kind", "x", "y", "w", "h", "shape", "glove", "view")
 ROWS = (
@@ -209,6 +211,20 @@ def test_models_and_selectors_stand_side_by_side(command, capsys):
     assert command("--json", "--model", "cnn", "--model", "svm", "--selector", "my.npz") == 0
     rows = told(capsys, "signs")
     assert [row["method"] for row in rows if row["by"] == "all"] == ["cnn, my.npz", "svm, my.npz"]
+
+
+def test_selectors_are_scored_with_a_profile_too(command, tmp_path, capsys):
+    image = np.zeros((40, 40, 3), np.uint8)
+    image[10:30, 10:30] = (200, 60, 20)
+    save_profile(tmp_path / "blue.json", learn_profile([image], [[(10, 10, 20, 20)]], "glove", "drawn"))
+    command("--json", "--selector", "classical", "--profile", tmp_path / "blue.json")
+    rows = told(capsys, "signs")
+    assert [row["method"] for row in rows if row["by"] == "all"] == [
+        "cnn, classical",
+        "cnn, classical, profile",
+    ]
+    with pytest.raises(UsageError, match=r"none\.json"):
+        command("--profile", tmp_path / "none.json")
 
 
 def test_sheets_and_rows_are_written(command, tmp_path, capsys):

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, Protocol, Self
+from typing import Any, Final, Protocol, Self
 
 import numpy as np
 
@@ -16,10 +16,14 @@ from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Box, Candidates, Image
 from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import UNSEEN, Sign, Signs
+from lightgesture.hands.hidden import HiddenHands
 from lightgesture.hands.memory import ReadingMemory
 from lightgesture.hands.pictures import draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.hands.reading import HandInView
 from lightgesture.records import Hand
+
+HIDDEN: Final = Sign(None, 0.0, reason="occluded")
+"""A hand that something hides where it is held."""
 
 
 class Finder(Protocol):
@@ -104,6 +108,7 @@ class HandReader(FrontEnd):
     def _begin(self) -> None:
         """What remembers the stream, and what was made of its last frame."""
         self._track, self._memory = self._make_track(), self._make_memory()
+        self._hidden = HiddenHands()
         self._upright: Image | None = None
         self._map: ColourMap | None = None
         self._candidates: Candidates | None = None
@@ -129,7 +134,8 @@ class HandReader(FrontEnd):
         self._hands = self._read.process(upright, seen, candidates.face, self._memory, time_s)
         self.clock.lap("classify")
         self._candidates = candidates
-        return self._signs()
+        # What is hidden in its place is shown all the same, and not read.
+        return Signs(HIDDEN, HIDDEN) if self._hidden.process(self._tracks) else self._signs()
 
     def recognize(self, image: Image) -> Signs:
         """The signs of both hands in a picture on its own."""

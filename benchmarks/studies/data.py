@@ -13,7 +13,7 @@ from lightgesture.benchmarks.reading.robustness import SEEN_SETS
 from lightgesture.errors import InputError
 from lightgesture.training.datasets import Label, Sample, read_hands, read_table
 from lightgesture.training.nets.cnn import CnnTraining
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings, read_originals
+from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.samples import in_order

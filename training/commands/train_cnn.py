@@ -79,6 +79,7 @@ def _training(args: argparse.Namespace) -> "CnnTraining":
         data=Path(args.data),
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
+        divers=Path(args.divers) if args.divers else None,
         without=tuple(args.without),
         seed=args.seed,
         jobs=args.jobs,

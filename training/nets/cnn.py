@@ -49,8 +49,10 @@ class CnnTraining:
     """Folders of pictures without hands."""
     scenes: Path | None = None
     """Table of whole pictures with boxes of hands and faces."""
+    divers: Path | None = None
+    """Table of pictures of real divers with their hands, see `pool.divers`."""
     without: tuple[str, ...] = ()
-    """Sources of `data` that are left out."""
+    """Sources of `data` and dives of `divers` that are left out."""
     seed: int = 0
     """Of everything drawn."""
     jobs: int = 1
@@ -93,7 +95,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     }
     folder = checkpoint_folder(out, request)
     progress(f"reading {len(rows)} hands")
-    originals = read_originals(rows, training.backgrounds, training.scenes)
+    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
     kept = kept_out(originals.hands)
     sources = np.array([hand.source for hand in originals.hands])

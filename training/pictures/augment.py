@@ -5,7 +5,7 @@ copies turn, stretch and mirror the hand, exchange what stands behind it, put it
 bright window, and shift its box as a selector would.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -90,12 +90,21 @@ class _Canvas:
     landmarks: NDArray[np.float32] | None
 
 
+Finish = Callable[[Image, NDArray[np.float32] | None, Random], Image]
+"""What is done to a copy at last: picture, mask of the hand where known, generator -> picture."""
+
+
 def augment(
-    hand: LabelledHand, backgrounds: Sequence[Image], settings: AugmentSettings, random: Random
+    hand: LabelledHand,
+    backgrounds: Sequence[Image],
+    settings: AugmentSettings,
+    random: Random,
+    finish: Finish | None = None,
 ) -> tuple[Image, Box, str]:
     """One altered copy: picture, uint8 (CANVAS, CANVAS, 3), box of the hand in it with an error, token.
 
-    backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand.
+    backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand. finish: instead of other
+    light.
     """
     canvas = _turned(hand, settings, random)
     token = hand.token
@@ -108,7 +117,7 @@ def augment(
         mask = hand_mask(canvas.landmarks, CANVAS, FINGER_WIDTH)
         if len(backgrounds) and random.random() < settings.background:
             image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
-    image = relight(image, mask, settings.light, random)
+    image = relight(image, mask, settings.light, random) if finish is None else finish(image, mask, random)
     return image, shifted_box(_box(canvas), settings, random), token
 
 

@@ -24,7 +24,8 @@ from lightgesture.benchmarks.studies.options import (
 )
 from lightgesture.config.parsers import positive, whole
 from lightgesture.console import say
-from lightgesture.training.commands.train_cnn import PRECISIONS, SIZES
+from lightgesture.training.commands.train import PRECISIONS
+from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import find_data
 
 

@@ -9,8 +9,8 @@ import pytest
 from lightgesture.training.nets.locator_samples import LocatorSamples, make_targets, warp
 from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, hard_regions, target_edges
 from lightgesture.training.pictures import light
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.light import photometric
-from lightgesture.training.regions.trees import BoxedPicture
 
 
 def a_picture(boxes=((120, 80, 60, 80),)):

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 from lightgesture.config.parsers import whole
 from lightgesture.errors import UsageError
 from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
-from lightgesture.training.commands.train import model_path
+from lightgesture.training.commands.train import PRECISIONS, model_path
 
 if TYPE_CHECKING:
     from lightgesture.training.nets.cnn import CnnTraining
 
 SIZES = ("small", "medium", "large")
-PRECISIONS = ("float32", "bfloat16")
-"""Those of `training.nets.net_training`, which is not imported here because it needs torch."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

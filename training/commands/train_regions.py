@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.training.commands.train import model_path
+from lightgesture.training.commands.train import PRECISIONS, model_path
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,6 +29,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=int,
         metavar="N",
         help="of the locator's training; the refiner's takes four fifths (default: 10000)",
+    )
+    parser.add_argument(
+        "--precision",
+        choices=PRECISIONS,
+        default="float32",
+        help="of the training; bfloat16 is quicker on processors with instructions for it (avx512_bf16, amx)",
     )
     parser.add_argument(
         "--without",
@@ -54,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
         without = left_out(args.without, args.fold)
     except ValueError as error:
         raise UsageError(f"--fold: {error}") from error
-    settings = RegionTraining()
+    settings = RegionTraining(precision=args.precision)
     if args.steps is not None:
         settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
     progress = (lambda _: None) if args.quiet else say

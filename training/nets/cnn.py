@@ -18,14 +18,8 @@ from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.pool.kept_sources import LEAST_FITTED, held_out_hands, kept_out
-from lightgesture.training.pool.patch_kinds import (
-    CONTOUR,
-    MARGIN,
-    PATCH,
-    SMALLEST_HAND,
-    PoolSettings,
-    read_originals,
-)
+from lightgesture.training.pool.originals import PoolSettings, read_originals
+from lightgesture.training.pool.patch_kinds import CONTOUR, MARGIN, PATCH, SMALLEST_HAND
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import read_rows, rows_digest
 from lightgesture.training.samples import in_order

@@ -12,7 +12,7 @@ from lightgesture.features.find.locator import EDGES, HEAT, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import LOCATOR_INPUT, LOCATOR_OUTPUTS, locator_nodes
 from lightgesture.training.nets.locator_samples import LocatorSamples
-from lightgesture.training.nets.net_training import Batch, LoopSettings, giou, train_net
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
 from lightgesture.training.nets.quantise import quantise
 from lightgesture.training.nets.torch_network import TorchNetwork
 
@@ -23,7 +23,12 @@ RATE = 2.5e-3
 
 
 def train_locator(
-    samples: LocatorSamples, steps: int, seed: int, checkpoint: Path, progress: Callable[[str], None]
+    samples: LocatorSamples,
+    steps: int,
+    precision: Precision,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
 ) -> IntegerNetwork:
     """The trained net in integers."""
     torch.manual_seed(seed)
@@ -41,7 +46,9 @@ def train_locator(
         weights = torch.from_numpy(np.stack([t.box_weight for t in targets]))
         return {INPUT: seen}, (*(torch.from_numpy(np.stack(m)) for m in maps), weights)
 
-    trained = train_net(net, batch, locator_loss, LoopSettings(steps, RATE), seed, checkpoint, progress)
+    trained = train_net(
+        net, batch, locator_loss, LoopSettings(steps, RATE, precision=precision), seed, checkpoint, progress
+    )
     typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
     return quantise(trained, typical, {INPUT: (-3.0, 3.0)})
 

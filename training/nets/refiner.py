@@ -11,7 +11,7 @@ from torch.nn import functional
 from lightgesture.features.find.refiner import BOX, HAND, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import REFINER_INPUT, REFINER_OUTPUTS, refiner_nodes
-from lightgesture.training.nets.net_training import Batch, LoopSettings, giou, train_net
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
 from lightgesture.training.nets.quantise import quantise
 from lightgesture.training.nets.refiner_samples import RefinerSamples
 from lightgesture.training.nets.torch_network import TorchNetwork
@@ -25,7 +25,12 @@ LEAST_SIDE = 0.02
 
 
 def train_refiner(
-    samples: RefinerSamples, steps: int, seed: int, checkpoint: Path, progress: Callable[[str], None]
+    samples: RefinerSamples,
+    steps: int,
+    precision: Precision,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
 ) -> IntegerNetwork:
     """The trained net in integers."""
     torch.manual_seed(seed)
@@ -36,7 +41,7 @@ def train_refiner(
         seen = torch.from_numpy(np.concatenate(windows)).permute(0, 3, 1, 2)
         return {INPUT: seen}, (torch.from_numpy(np.concatenate(targets)),)
 
-    loop = LoopSettings(steps, RATE, warm_up=200, mean=0.998)
+    loop = LoopSettings(steps, RATE, warm_up=200, mean=0.998, precision=precision)
     trained = train_net(net, batch, refiner_loss, loop, seed, checkpoint, progress)
     typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
     return quantise(trained, typical, {INPUT: (-3.0, 3.0)})

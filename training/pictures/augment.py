@@ -14,12 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image
+from lightgesture.models import NONE
 from lightgesture.training.pictures.cutouts import draw_hand
 from lightgesture.training.pictures.light import LightSettings, relight
 from lightgesture.training.pool.samples import LabelledHand, landmark_box
 
 MIRRORED_TOKENS = {"left": "right", "right": "left"}
 """A mirrored thumb points the other way; every other sign keeps its name."""
+
+UPRIGHT = {*MIRRORED_TOKENS, NONE}
+"""What lying on its side may turn into something else: a thumb up becomes a thumb to the side."""
+LYING: Final = (55.0, 100.0)
+"""Degrees by which a hand is turned that lies on its side."""
 
 Random = np.random.Generator
 
@@ -42,6 +48,8 @@ class AugmentSettings:
     """Share of mirrored copies, 0 to 1."""
     rotation: float = 14.0
     """Standard deviation, degrees, 0 to 90."""
+    lying: float = 0.0
+    """Share of copies, 0 to 1, that lie on their side, of signs that are the same there."""
     stretch: float = 0.14
     """Standard deviation of the logarithm of the aspect, 0 to 0.5."""
     narrowed: float = 0.0
@@ -147,6 +155,8 @@ def _turned(hand: LabelledHand, settings: AugmentSettings, random: Random) -> _C
     """The hand turned, stretched and sheared about the middle of its box, drawn on the canvas."""
     x, y, width, height = hand.box
     angle = np.deg2rad(random.normal(0.0, settings.rotation))
+    if settings.lying and hand.token not in UPRIGHT and random.random() < settings.lying:
+        angle += np.deg2rad(random.uniform(*LYING) * random.choice((-1.0, 1.0)))
     aspect = np.exp(random.normal(0.0, settings.stretch))
     if settings.narrowed and random.random() < settings.narrowed:
         aspect *= random.uniform(NARROWEST, 1.0)

@@ -24,8 +24,8 @@ REAL_LIGHT: Final = LightSettings(
     dark=0.1,
     backlit=0.0,
     water=0.0,
-    blur=0.4,
-    widest_blur=1.4,
+    blur=0.15,
+    widest_blur=0.7,
     noise=3.0,
 )
 """Of copies of real divers' hands, which are under water already."""
@@ -37,21 +37,31 @@ BEFORE_SUBMERGING: Final = LightSettings(gradient=0.5, dark=0.0, backlit=0.2, wa
 """Light on a dry hand before it looks as on a dive."""
 BACKGROUND: Final = 0.8
 """Share of such copies before another background, which is more often a dark suit than a room."""
-TURN: Final = 24.0
+TURN: Final = 20.0
 """Standard deviation of their turn, degrees: divers hold signs more askew than people before a webcam."""
+LYING: Final = 0.2
+"""Share of them that lie on their side, as a fifth of real divers' signs do."""
+SIGN_LOOK: Final = 0.7
+"""Share of copies that take the look of a sign, which is larger and clearer than that of a hand at rest."""
+LEAST_SPREAD: Final = 7.0
+"""Deviation of green in a look, grey levels, below which a hand hardly shows."""
 
 
 def sea(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
     """A copy of each hand as a real dive would show it."""
-    looks = originals.divers.looks
+    faint, clear = (
+        [look for look in looks if look.deviation[1] >= LEAST_SPREAD]
+        for looks in (originals.divers.looks, originals.divers.sign_looks)
+    )
 
     def finish(image: Image, mask: Float | None, random: Random) -> Image:
         lit = relight(image, mask, BEFORE_SUBMERGING, random)
-        return submerge(lit, mask, CANVAS / REACH, looks, random)
+        of_sign = clear and (not faint or random.random() < SIGN_LOOK)
+        return submerge(lit, mask, CANVAS / REACH, clear if of_sign else faint, random)
 
-    how = replace(settings.augment, rotation=TURN, background=BACKGROUND)
+    how = replace(settings.augment, rotation=TURN, background=BACKGROUND, lying=LYING)
     yield from altered(originals, originals.hands[first:last], how, random, finish)
 
 

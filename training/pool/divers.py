@@ -28,20 +28,31 @@ SOURCE: Final = "divers"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Divers:
-    """shown: hands with a token. resting: hands of other shapes. scenes: whole pictures. looks: of the hands."""
+    """shown: hands with a token. resting: hands of other shapes. scenes: whole pictures. looks: of the resting hands.
+    sign_looks: of those with a token."""
 
     shown: Sequence[LabelledHand] = ()
     resting: Sequence[LabelledHand] = ()
     scenes: Sequence[Scene] = ()
     looks: Sequence[SeaLook] = ()
+    sign_looks: Sequence[SeaLook] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class DiverHand:
+    """box: of the hand. shape: a token, the name of another shape, or `UNNAMED`. gloved: whether it wears a glove."""
+
+    box: Box
+    shape: str
+    gloved: bool
 
 
 @dataclass(slots=True)
-class _Picture:
-    """Boxes of one picture. hands: with their shapes."""
+class DiverPicture:
+    """Boxes of one picture. sequence: the dive."""
 
     sequence: str
-    hands: list[tuple[Box, str]] = field(default_factory=list)
+    hands: list[DiverHand] = field(default_factory=list)
     faces: list[Box] = field(default_factory=list)
 
 
@@ -49,26 +60,38 @@ def read_divers(table: Path, tokens: Collection[str], without: Collection[str] =
     """All divers of a table, less the dives of `without`; shapes beside `tokens` are `none`. Raises InputError."""
     shown: list[LabelledHand] = []
     resting: list[LabelledHand] = []
-    scenes, looks = [], []
-    for path, picture in _pictures(table).items():
+    scenes = []
+    looks: list[SeaLook] = []
+    sign_looks: list[SeaLook] = []
+    for path, picture in diver_pictures(table).items():
         if picture.sequence in without:
             continue
         image, source = read_picture(path), f"{SOURCE} {picture.sequence}"
-        scenes.append(boxed_scene(image, [box for box, _ in picture.hands], picture.faces, source))
-        for box, shape in picture.hands:
-            looks.append(measure_look(image, box))
-            if shape != UNNAMED:
-                token = shape if shape in tokens else NONE
-                hand = cut_hand(image, HandRow(path, token, source, box=box))
-                (resting if token == NONE else shown).append(hand)
-    return Divers(shown, resting, scenes, looks)
+        boxes = [one.box for one in picture.hands]
+        scenes.append(boxed_scene(image, boxes, picture.faces, source))
+        for one in picture.hands:
+            if one.shape == UNNAMED:
+                continue
+            token = one.shape if one.shape in tokens else NONE
+            hand, look = (
+                cut_hand(image, HandRow(path, token, source, box=one.box)),
+                measure_look(image, one.box, one.gloved),
+            )
+            if token == NONE:
+                resting.append(hand)
+                looks.append(look)
+            else:
+                shown.append(hand)
+                sign_looks.append(look)
+    return Divers(shown, resting, scenes, looks, sign_looks)
 
 
-def _pictures(table: Path) -> dict[Path, _Picture]:
-    found: dict[Path, _Picture] = {}
+def diver_pictures(table: Path) -> dict[Path, DiverPicture]:
+    """Pictures of a table and their boxes. Raises InputError."""
+    found: dict[Path, DiverPicture] = {}
     for line, row in table_rows(table, ("file",), "see --divers"):
         path = picture_path(table.parent, row["file"])
-        picture = found.setdefault(path, _Picture(row.get("sequence") or path.parent.name))
+        picture = found.setdefault(path, DiverPicture(row.get("sequence") or path.parent.name))
         kind = row.get("kind")
         if kind not in (HAND, FACE):
             continue
@@ -77,7 +100,8 @@ def _pictures(table: Path) -> dict[Path, _Picture]:
         except (ValueError, OverflowError) as error:
             raise InputError(f"{table}, line {line}: holds no box ({error}); correct it") from None
         if kind == HAND:
-            picture.hands.append((box, row.get("shape") or UNNAMED))
+            gloved = row.get("glove") == "glove"
+            picture.hands.append(DiverHand(box, row.get("shape") or UNNAMED, gloved))
         else:
             picture.faces.append(box)
     return found

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lightgesture.models import CLASSES, NONE
 from lightgesture.training.pictures.augment import AugmentSettings
+from lightgesture.training.pictures.light import LightSettings
 from lightgesture.training.pool.divers import Divers, read_divers
 from lightgesture.training.pool.negatives import Scene, read_backgrounds, read_scenes
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
@@ -31,7 +32,12 @@ class PoolSettings:
     """Rendered hands beside the real ones, of the signs that both know."""
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(
-            rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
+            rotation=18.0,
+            scale=0.11,
+            shift=0.06,
+            narrowed=0.2,
+            background=0.6,
+            light=LightSettings(grey=0.25, noise=4.0),
         )
     )
     """How far copies go; mild copies go as far as `augment.MILD`."""

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import cv2
 import numpy as np
@@ -17,6 +17,8 @@ from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
+from lightgesture.training.pictures.boxed import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDivers
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
@@ -27,13 +29,15 @@ from lightgesture.training.regions.region_pictures import (
     variants,
 )
 from lightgesture.training.regions.trees import (
-    BoxedPicture,
     fit_pairs,
     fit_place_pairs,
     fit_places,
     fit_regions,
     look,
 )
+
+if TYPE_CHECKING:
+    from lightgesture.training.nets.net_training import Precision
 
 Progress = Callable[[str], None]
 
@@ -57,6 +61,8 @@ class RegionTraining:
     """Steps of the optimiser, 1 or more."""
     refiner_steps: int = 8000
     """Likewise."""
+    precision: "Precision" = "float32"
+    """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
 
 
 def train_regions(
@@ -114,14 +120,20 @@ def _learned(
     from lightgesture.training.nets.refiner import train_refiner
     from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
 
-    samples = LocatorSamples(material.frames, material.empty, composed)
-    locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
+    divers = RealDivers(material.divers, material.hands) if material.divers else None
+    samples = LocatorSamples(material.frames, material.empty, composed, divers)
+    locator = train_locator(
+        samples, settings.locator_steps, settings.precision, seed, folder / "locator.pt", progress
+    )
     progress("searching for what the locator mistakes")
     frames, empty, hard = (
         hard_regions(part, locator) for part in (material.frames, material.empty, composed)
     )
-    windows = RefinerSamples(frames, empty, hard)
-    return locator, train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
+    mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
+    windows = RefinerSamples(frames, empty, hard, divers, mistaken)
+    return locator, train_refiner(
+        windows, settings.refiner_steps, settings.precision, seed, folder / "refiner.pt", progress
+    )
 
 
 def _tree_pictures(
@@ -129,7 +141,7 @@ def _tree_pictures(
 ) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
     """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
     rng = np.random.default_rng(seed)
-    single = [*material.empty, *unseen]
+    single = [*material.empty, *unseen, *(one.picture for one in material.divers if not one.picture.ignored)]
     whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
     parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
     for place, index in enumerate(order):
@@ -156,6 +168,7 @@ def _classical(
         for picture in material.frames:
             yield from variants(picture, rng)
         yield from material.empty
+        yield from (one.picture for one in material.divers if not one.picture.ignored)
         yield from composed[: len(composed) // 2]
 
     regions = fit_regions(region_pictures(), bank, seed)
@@ -174,6 +187,7 @@ def _write_card(
             "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
             "hands cut out of hands/train": len(material.hands),
             "underwater frames without a hand": len(material.empty),
+            "real divers (divers)": len(material.divers),
             "composed pictures": COMPOSED + UNSEEN,
             "sets of negatives used": list(NEGATIVE_SETS),
             "kept from the nets, for the trees": f"one in {ONE_IN} sources",
@@ -182,7 +196,7 @@ def _write_card(
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
-        "limits": "bare hands in air; water, darkness and divers are composed; gloves were not seen",
+        "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
         "seed": seed,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),

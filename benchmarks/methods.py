@@ -7,12 +7,16 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture import models
 from lightgesture.benchmarks.paper.bank import HandBank
 from lightgesture.benchmarks.paper.chain import PaperChain, PaperHand
 from lightgesture.benchmarks.scorer import Reading
-from lightgesture.features.find.selector import SELECTORS, SelectorName
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.selector import SELECTORS, SelectorName, load_selector
+from lightgesture.features.profile import ColourProfile
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, Word, load_grammar
+from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord
 
@@ -99,6 +103,24 @@ def product(model: str, selector: SelectorName = SELECTORS[0]) -> PipelineMethod
     """The product with the named model; under the name of its selector too, where it is not the default one."""
     name = "lightgesture" if selector == SELECTORS[0] else f"lightgesture, {selector}"
     return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, hold=hold))
+
+
+def reading_method(
+    name: str,
+    classifier: models.Classifier,
+    selector: str = SELECTORS[0],
+    profile: ColourProfile | None = None,
+) -> PipelineMethod:
+    """The product with a classifier that is open, and a selector by name or by its file, whose learned choice is taken.
+
+    profile: the colours of the hands. Raises lightgesture.features.find.selector_file.SelectorError.
+    """
+    if selector in SELECTORS:
+        find = load_selector("classical" if selector == "classical" else "learned")
+    else:
+        find = load_selector(SELECTORS[0], selector)
+    front = HandReader(ReadingStage(classifier), find=find, colour=ColourStage(profile=profile))
+    return PipelineMethod(name, lambda hold: Pipeline(front.for_stream(), hold=hold))
 
 
 class _PipelineStream:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lightgesture.benchmarks.commands import evaluate_regions
+from lightgesture.benchmarks.commands import evaluate_divers, evaluate_regions
 from lightgesture.benchmarks.progress import progress_bar
 from lightgesture.console import native_messages_muted, print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from lightgesture.benchmarks.tables import Table
     from lightgesture.models import Classifier
 
-HANDS, REGIONS, SUITE = "hands", "regions", "suite"
-TARGETS = (HANDS, REGIONS, SUITE)
+HANDS, REGIONS, DIVERS, SUITE = "hands", "regions", "divers", "suite"
+TARGETS = (HANDS, REGIONS, DIVERS, SUITE)
 DEFAULT_MODEL = "cnn"
 
 
@@ -26,9 +26,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "target",
         nargs="?",
-        choices=TARGETS,
+        metavar="|".join(TARGETS) + "|DIR",
         help="hands: the classifier in given boxes; regions: hands found in whole frames and, with --model, read; "
-        "suite: the whole chain on signed clips that are rendered here and cached, which takes long at first "
+        "divers: real divers' hands, found and read in whole pictures and in given boxes; suite: the whole chain on "
+        "signed clips that are rendered here and cached, which takes long at first; DIR: with --format, a public set "
         "(default: hands and regions with a model, as far as the data folder allows)",
     )
     parser.add_argument(
@@ -41,9 +42,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="svm|cnn|PATH",
         help=f"classifier (default: {DEFAULT_MODEL}; regions alone: none, hands are found and not read); with hands "
-        "repeatable, the models stand side by side",
+        "and divers repeatable, the models stand side by side",
     )
     evaluate_regions.add_arguments(parser)
+    evaluate_divers.add_arguments(parser)
+    evaluate_divers.add_public_arguments(parser)
     parser.add_argument("--json", action="store_true", help="one JSON object per table row on stdout")
     parser.add_argument(
         "--only",
@@ -65,20 +68,54 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.config.opening import make_folder
     from lightgesture.pipeline import OneBlasThread
 
-    if args.target != SUITE and (args.only or (args.quick and not args.clips)):
-        raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
-    for option in evaluate_regions.OPTIONS:
-        is_fitting = args.target == REGIONS or (args.target == SUITE and option == "selector")
-        if getattr(args, option) and not is_fitting:
-            raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
-    if args.target != HANDS and len(args.model or ()) > 1:
-        raise UsageError("several --model are compared in given boxes only; name the target: evaluate hands")
+    refuse_misplaced(args)
     if args.jobs < 1:
         raise UsageError(f"--jobs {args.jobs}: must be at least 1; give a larger number")
     if args.out:
         make_folder(args.out)
     with native_messages_muted(), OneBlasThread().block():
+        if args.format or args.target == DIVERS:
+            return run_divers(args)
         return run_suite(args) if args.target == SUITE else run_pictures(args)
+
+
+def refuse_misplaced(args: argparse.Namespace) -> None:
+    """UsageError: there is no such target, or an option is not of it."""
+    is_of_divers = args.target == DIVERS or args.format is not None
+    if args.format is None and args.target not in (None, *TARGETS):
+        raise UsageError(
+            f"{args.target}: no such target; name {', '.join(TARGETS)}, or a folder with --format"
+        )
+    if args.format is not None and args.target is None:
+        raise UsageError(
+            "--format tells how a public set is read; name its folder too: evaluate DIR --format ..."
+        )
+    if args.target != SUITE and (args.only or (args.quick and not args.clips)):
+        raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
+    for option in evaluate_regions.OPTIONS:
+        is_fitting = args.target == REGIONS or (
+            option == "selector" and (is_of_divers or args.target == SUITE)
+        )
+        if getattr(args, option) and not is_fitting:
+            raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")
+    for option in evaluate_divers.OPTIONS:
+        if getattr(args, option) and not is_of_divers:
+            raise UsageError(f"--{option} is about real divers; name the target: evaluate divers")
+    if args.target != HANDS and not is_of_divers and len(args.model or ()) > 1:
+        raise UsageError("several --model are compared in given boxes only; name the target: evaluate hands")
+
+
+def run_divers(args: argparse.Namespace) -> int:
+    """Score models and selectors on real divers; 0 when all was done."""
+    from lightgesture.benchmarks import accuracy
+
+    models = {} if args.join else named_models(args)
+    report, written = evaluate_divers.find_and_read(args, models, progress_bar)
+    print_report(report, args.json)
+    if args.out:
+        for path in [*written, *accuracy.save_failures(report, Path(args.out), say)]:
+            say(f"wrote {path}")
+    return ExitStatus.OK
 
 
 def run_pictures(args: argparse.Namespace) -> int:

@@ -25,8 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--selector",
         action="append",
         metavar="NAME|PATH",
-        help="what finds the hands (repeatable): with regions names or selector files, default: every name; with suite "
-        "names, default: learned",
+        help="what finds the hands (repeatable): with regions names or selector files, default: every name; with "
+        "divers likewise, default: learned; with suite names, default: learned",
     )
     parser.add_argument(
         "--fold",

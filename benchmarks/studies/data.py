@@ -76,6 +76,13 @@ def open_study(data: Path, folder: Path, training: CnnTraining, progress: Progre
     return Study(data, folder, rows, originals.hands, subjects, pool, read_hands(data))
 
 
+def few_originals(training: CnnTraining, count: int) -> Originals:
+    """At most `count` hands, evenly spread over the rows of the training's table, and all other pictures of it."""
+    rows = read_rows(training.data, training.without)
+    places = np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int)
+    return read_originals([rows[place] for place in places], training.backgrounds, training.scenes)
+
+
 def draw_pool(
     originals: Originals, settings: PoolSettings, training: CnnTraining, folder: Path, progress: Progress
 ) -> PatchPool:

@@ -1,5 +1,6 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
+import hashlib
 import json
 import time
 from collections.abc import Callable, Iterator
@@ -12,7 +13,7 @@ import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, SelectorError, load_learned
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_selector
@@ -63,6 +64,18 @@ class RegionTraining:
     """Likewise."""
     precision: "Precision" = "float32"
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
+    start: Path | None = None
+    """Selector whose nets go on learning; None to begin with random weights."""
+
+    @property
+    def origin(self) -> str | None:
+        """SHA-256 of that file. Raises SelectorError."""
+        if self.start is None:
+            return None
+        try:
+            return hashlib.sha256(self.start.read_bytes()).hexdigest()
+        except OSError as error:
+            raise SelectorError(f"{self.start}: cannot be read ({error.strerror})") from error
 
 
 def train_regions(
@@ -81,7 +94,8 @@ def train_regions(
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
-    folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
+    told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
+    folder = checkpoint_folder(out, {"seed": seed, **told})
     progress("reading whole frames and cutting out hands")
     material = read_material(data, without, seed)
     for_nets, for_trees = material.parted(ONE_IN)
@@ -121,19 +135,19 @@ def _learned(
     from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
 
     divers = RealDivers(material.divers, material.hands) if material.divers else None
+    begun = None if settings.start is None else load_learned(settings.start)
+    first, second = (begun.locator, begun.refiner) if begun else (None, None)
+    steps, precision = settings.locator_steps, settings.precision
     samples = LocatorSamples(material.frames, material.empty, composed, divers)
-    locator = train_locator(
-        samples, settings.locator_steps, settings.precision, seed, folder / "locator.pt", progress
-    )
+    locator = train_locator(samples, steps, precision, first, seed, folder / "locator.pt", progress)
     progress("searching for what the locator mistakes")
     frames, empty, hard = (
         hard_regions(part, locator) for part in (material.frames, material.empty, composed)
     )
     mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
     windows = RefinerSamples(frames, empty, hard, divers, mistaken)
-    return locator, train_refiner(
-        windows, settings.refiner_steps, settings.precision, seed, folder / "refiner.pt", progress
-    )
+    steps = settings.refiner_steps
+    return locator, train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)
 
 
 def _tree_pictures(
@@ -176,7 +190,12 @@ def _classical(
 
 
 def _write_card(
-    out: Path, seed: int, without: LeftOut, settings: RegionTraining, material: Material, seconds: float
+    out: Path,
+    seed: int,
+    without: LeftOut,
+    settings: RegionTraining,
+    material: Material,
+    seconds: float,
 ) -> None:
     import sklearn
     import torch
@@ -198,6 +217,7 @@ def _write_card(
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
         "seed": seed,
+        "nets_went_on_from_the_selector_of_sha256": settings.origin,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),
         "peak_memory_mib": peak_memory_mib(),

@@ -53,10 +53,12 @@ class Study:
 def training_of(data: Path, **changes: object) -> CnnTraining:
     """The training of the shipped net from a data folder, with changed fields."""
     negatives, scenes = data / "negatives", data / "webcam" / "train.csv"
+    divers = data / "divers" / "boxes.csv"
     training = CnnTraining(
         data=data / "hands" / "train.csv",
         backgrounds=tuple(negatives / name for name in sorted(SEEN_SETS) if (negatives / name).is_dir()),
         scenes=scenes if scenes.is_file() else None,
+        divers=divers if divers.is_file() else None,
         without=LEFT_OUT,
     )
     return replace(training, **changes)  # type: ignore[arg-type]
@@ -70,7 +72,7 @@ def open_study(data: Path, folder: Path, training: CnnTraining, progress: Progre
     originals = (
         Originals([load_hand(row) for row in rows])
         if made
-        else read_originals(rows, training.backgrounds, training.scenes)
+        else read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     )
     pool = draw_pool(originals, training.pool, training, folder, progress)
     return Study(data, folder, rows, originals.hands, subjects, pool, read_hands(data))

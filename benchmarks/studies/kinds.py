@@ -17,6 +17,7 @@ from lightgesture.benchmarks.studies.data import (
     rows_of_sources,
     val_answers,
 )
+from lightgesture.benchmarks.studies.places import places
 from lightgesture.benchmarks.studies.rows import (
     COLUMNS,
     NOTE,
@@ -182,7 +183,9 @@ def augmentation(study: Study, training: CnnTraining, folder: Path, args: argpar
         settings = POOLS[name](training.pool)
         place = folder / "_".join(name.split())
         if originals is None:
-            originals = read_originals(study.rows, training.backgrounds, training.scenes)
+            originals = read_originals(
+                study.rows, training.backgrounds, training.scenes, training.divers, training.without
+            )
         say(f"{name}: drawing its pool")
         pool = draw_pool(originals, settings, training, place / "pool", say)
         own = replace(study, pool=pool)
@@ -229,4 +232,5 @@ KINDS: dict[str, Kind] = {
     "sources": sources,
     "sizes": sizes,
     "steps": steps,
+    "places": places,
 }

@@ -1,5 +1,6 @@
 """The file of a hand net: its integers (`features.net.file`), how patches are cut, and its temperature."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -7,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.net.file import network_from
+from lightgesture.features.net.network import IntegerNetwork, Shape
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models.archive import check_kind, positive, settings_from
-from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel
+from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel, SecondLook
 from lightgesture.models.errors import ModelError
 
 KIND: Final = "cnn"
@@ -18,7 +20,8 @@ FORMAT: Final = 2
 """Version of the file; raised whenever an older reader would misread a newer file."""
 
 NET: Final = "net"
-"""Beginning of the names of the net's members."""
+SECOND: Final = "second"
+"""Beginnings of the names of either net's members."""
 
 
 def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CnnModel:
@@ -35,6 +38,7 @@ def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray
             contour=None if contour is None else settings_from(ContourSettings, contour),
             contour_mean=np.asarray(arrays["contour_mean"], np.float32),
             contour_deviation=np.asarray(arrays["contour_deviation"], np.float32),
+            second=_second_from(header.get("second"), arrays),
         )
         _check(model)
     except (KeyError, TypeError, ValueError) as error:
@@ -42,22 +46,37 @@ def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray
     return model
 
 
+def _second_from(content: dict[str, Any] | None, arrays: dict[str, NDArray[Any]]) -> SecondLook | None:
+    if content is None:
+        return None
+    sure = float(content["sure"])
+    if not 0.0 <= sure <= 1.0:
+        raise ValueError(f"sure is {sure}, must be 0 to 1")
+    return SecondLook(network_from(arrays, SECOND), positive(content, "temperature"), sure)
+
+
 def _check(model: CnnModel) -> None:
     """Refuse parts that do not go together. Raises ValueError."""
-    inputs = {PATCH: (model.patch.size, model.patch.size, 3)}
+    inputs: dict[str, Shape] = {PATCH: (model.patch.size, model.patch.size, 3)}
     length = 0 if model.contour is None else contour_length(model.contour)
     if length:
         inputs[CONTOUR] = (1, 1, length)
-    if dict(model.network.inputs) != inputs:
-        raise ValueError(f"the net's inputs are {dict(model.network.inputs)}, must be {inputs}")
-    last = {node.name: node for node in model.network.nodes}.get(SCORES)
-    if model.network.outputs != (SCORES,) or last is None or last.op != "dense":
-        raise ValueError(f"the net's one output must be the dense layer {SCORES}")
-    if last.channels != len(model.classes) or len(set(model.classes)) != len(model.classes):
-        raise ValueError(f"{last.channels} scores for the classes {', '.join(model.classes)}")
+    _check_network(model.network, inputs, model.classes)
+    if model.second is not None:
+        _check_network(model.second.network, {PATCH: inputs[PATCH]}, model.classes)
     for name in ("contour_mean", "contour_deviation"):
         values = getattr(model, name)
         if values.shape != (length,) or not np.isfinite(values).all():
             raise ValueError(f"{name} must be {length} finite numbers")
     if not (model.contour_deviation > 0.0).all():
         raise ValueError("contour_deviation must be above 0")
+
+
+def _check_network(network: IntegerNetwork, inputs: Mapping[str, Shape], classes: Sequence[str]) -> None:
+    if dict(network.inputs) != inputs:
+        raise ValueError(f"the net's inputs are {dict(network.inputs)}, must be {dict(inputs)}")
+    last = {node.name: node for node in network.nodes}.get(SCORES)
+    if network.outputs != (SCORES,) or last is None or last.op != "dense":
+        raise ValueError(f"the net's one output must be the dense layer {SCORES}")
+    if last.channels != len(classes) or len(set(classes)) != len(classes):
+        raise ValueError(f"{last.channels} scores for the classes {', '.join(classes)}")

@@ -46,7 +46,7 @@ MARGIN = 1.6
 """Side of a crop against the larger side of the landmark box."""
 PALM_SHARE: Final = 0.85
 """Share of palms among tokens other than left and right; the others show the back."""
-GLOVE_SHARE: Final = 0.03
+GLOVE_SHARE: Final = 0.25
 """Share of gloved hands."""
 WATER_SHARE: Final = 0.3
 """Share of hands seen through water."""

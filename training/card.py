@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from lightgesture._version import __version__
 from lightgesture.models import NONE
 from lightgesture.training.pool.kept_sources import LEAST_FITTED, ONE_IN, HeldOut
-from lightgesture.training.pool.patch_kinds import RENDERED_SOURCE, Originals
+from lightgesture.training.pool.originals import Originals
+from lightgesture.training.pool.patch_kinds import RENDERED_SOURCE
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.pool.samples import HandRow
 
@@ -111,6 +112,12 @@ def data_section(
         "scenes": {
             "pictures": len(originals.scenes),
             "sources": len({scene.source for scene in originals.scenes}),
+        },
+        "divers": {
+            "pictures": len(originals.divers.scenes),
+            "dives": len({scene.source for scene in originals.divers.scenes}),
+            "signs": len(originals.divers.shown),
+            "other_hands": len(originals.divers.resting),
         },
         "left_out": list(without),
         "rendered_hands": int(np.char.startswith(pool.sources, f"{RENDERED_SOURCE} ").sum()),

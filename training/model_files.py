@@ -23,6 +23,7 @@ from lightgesture.training.nets.flatbuffer import network_arrays
 
 def write_cnn_model(model: CnnModel, path: Path) -> None:
     """Write the file of a hand net. Raises UsageError where the place cannot be written."""
+    second = model.second
     header = {
         "format": cnn_file.FORMAT,
         "kind": cnn_file.KIND,
@@ -31,9 +32,11 @@ def write_cnn_model(model: CnnModel, path: Path) -> None:
         "contour": None if model.contour is None else asdict(model.contour),
         "temperature": model.temperature,
         "smallest_hand": model.smallest_hand,
+        "second": None if second is None else {"temperature": second.temperature, "sure": second.sure},
     }
+    larger = {} if second is None else network_arrays(cnn_file.SECOND, second.network)
     numbers = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
-    _write(path, header, {**network_arrays(cnn_file.NET, model.network), **numbers})
+    _write(path, header, {**network_arrays(cnn_file.NET, model.network), **larger, **numbers})
 
 
 def write_svm_model(model: SvmModel, path: Path) -> None:

@@ -28,7 +28,8 @@ from lightgesture.errors import ExitStatus, InputError
 from lightgesture.features.patch import cut_patch
 from lightgesture.sources import read_picture
 from lightgesture.training.datasets import find_data
-from lightgesture.training.pool.patch_kinds import KEPT, KINDS, MARGIN, RENDERED_SOURCE, PoolSettings
+from lightgesture.training.pool.originals import PoolSettings
+from lightgesture.training.pool.patch_kinds import KEPT, KINDS, MARGIN, RENDERED_SOURCE
 
 RENDERED: Final = "rendered"
 RENDERED_SHARE: Final = 0.25

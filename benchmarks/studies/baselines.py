@@ -36,7 +36,8 @@ from lightgesture.features.vector import VectorSettings
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.training.datasets import find_data, read_hands
 from lightgesture.training.model_files import write_svm_model
-from lightgesture.training.pool.patch_kinds import MARGIN, PATCH, Originals
+from lightgesture.training.pool.originals import Originals
+from lightgesture.training.pool.patch_kinds import MARGIN, PATCH
 from lightgesture.training.svm.machine import SvmSettings, train_svm
 from lightgesture.training.time_left import tenths
 

@@ -13,7 +13,7 @@ from lightgesture.benchmarks.reading.robustness import SEEN_SETS
 from lightgesture.errors import InputError
 from lightgesture.training.datasets import Label, Sample, read_hands, read_table
 from lightgesture.training.nets.cnn import CnnTraining
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings, read_originals
+from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand, read_rows
 from lightgesture.training.samples import in_order
@@ -53,10 +53,12 @@ class Study:
 def training_of(data: Path, **changes: object) -> CnnTraining:
     """The training of the shipped net from a data folder, with changed fields."""
     negatives, scenes = data / "negatives", data / "webcam" / "train.csv"
+    divers = data / "divers" / "boxes.csv"
     training = CnnTraining(
         data=data / "hands" / "train.csv",
         backgrounds=tuple(negatives / name for name in sorted(SEEN_SETS) if (negatives / name).is_dir()),
         scenes=scenes if scenes.is_file() else None,
+        divers=divers if divers.is_file() else None,
         without=LEFT_OUT,
     )
     return replace(training, **changes)  # type: ignore[arg-type]
@@ -70,7 +72,7 @@ def open_study(data: Path, folder: Path, training: CnnTraining, progress: Progre
     originals = (
         Originals([load_hand(row) for row in rows])
         if made
-        else read_originals(rows, training.backgrounds, training.scenes)
+        else read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     )
     pool = draw_pool(originals, training.pool, training, folder, progress)
     return Study(data, folder, rows, originals.hands, subjects, pool, read_hands(data))

@@ -17,6 +17,7 @@ from lightgesture.benchmarks.studies.data import (
     rows_of_sources,
     val_answers,
 )
+from lightgesture.benchmarks.studies.places import places
 from lightgesture.benchmarks.studies.rows import (
     COLUMNS,
     NOTE,
@@ -32,7 +33,7 @@ from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.nets.cnn import CnnTraining
 from lightgesture.training.pool.kept_sources import kept_out
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings, read_originals
+from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import rows_without
 
 Change = Callable[[PoolSettings], PoolSettings]
@@ -182,7 +183,9 @@ def augmentation(study: Study, training: CnnTraining, folder: Path, args: argpar
         settings = POOLS[name](training.pool)
         place = folder / "_".join(name.split())
         if originals is None:
-            originals = read_originals(study.rows, training.backgrounds, training.scenes)
+            originals = read_originals(
+                study.rows, training.backgrounds, training.scenes, training.divers, training.without
+            )
         say(f"{name}: drawing its pool")
         pool = draw_pool(originals, settings, training, place / "pool", say)
         own = replace(study, pool=pool)
@@ -229,4 +232,5 @@ KINDS: dict[str, Kind] = {
     "sources": sources,
     "sizes": sizes,
     "steps": steps,
+    "places": places,
 }

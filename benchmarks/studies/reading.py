@@ -2,7 +2,8 @@
 
 folds: five nets, each without a fifth of the sources. subjects: people held out of sources that are trained on, the
 paper's kind of test. outline: with and without the outline's numbers. augmentation: one alteration left out at a
-time. sources: few people or many. sizes: three nets. steps: the learning curve. Every row is one training of
+time. sources: few people or many. sizes: three nets. steps: the learning curve. places: real divers of places that
+nothing was learnt of. Every row is one training of
 `train cnn` with a seed, from one pool (augmentation draws one for each row); what is done lies in the pool's folder,
 and the same command goes on there.
 """
@@ -24,7 +25,8 @@ from lightgesture.benchmarks.studies.options import (
 )
 from lightgesture.config.parsers import positive, whole
 from lightgesture.console import say
-from lightgesture.training.commands.train_cnn import PRECISIONS, SIZES
+from lightgesture.training.commands.train import PRECISIONS
+from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import find_data
 
 

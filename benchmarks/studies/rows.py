@@ -11,6 +11,7 @@ from lightgesture.benchmarks.reading.hands import HandAnswer, summary_cells
 from lightgesture.benchmarks.studies.data import Mask, Study, answers_of, val_answers
 from lightgesture.benchmarks.tables import Cell
 from lightgesture.console import say
+from lightgesture.models.cnn import CnnModel
 from lightgesture.training.nets.cnn import CnnTraining, in_integers, learn
 
 PARTS = ("hands", "accuracy", "macro_token", "worst_token", "worst_accuracy", "none_auroc")
@@ -23,16 +24,12 @@ NOTE = (
 Rows = list[dict[str, Cell]]
 
 
-def fit_row(
-    study: Study, name: str, rows: Mask, held: Mask, training: CnnTraining, folder: Path
-) -> dict[str, Cell]:
-    """Train a net on rows of the pool and score it on the held-out hands and on val.
+def net_of(study: Study, name: str, rows: Mask, training: CnnTraining, folder: Path) -> CnnModel:
+    """A net trained on rows of the pool.
 
     folder: of all trainings from this pool; each has one of its own there, so that rows of several studies that are the
     same training are trained once.
     """
-    from lightgesture.models.cnn import CnnClassifier
-    from lightgesture.training.nets.architectures import multiply_adds
     from lightgesture.training.nets.checkpoints import checkpoint_folder
 
     chosen = sha256(np.packbits(rows).tobytes()).hexdigest()
@@ -40,7 +37,17 @@ def fit_row(
     digest = sha256(repr(request).encode()).hexdigest()[:12]
     parts = checkpoint_folder(folder / digest, request)
     learnt = learn(study.pool, rows, study.classes, training, parts, lambda text: say(f"{name}: {text}"))
-    model = in_integers(learnt, training)
+    return in_integers(learnt, training)
+
+
+def fit_row(
+    study: Study, name: str, rows: Mask, held: Mask, training: CnnTraining, folder: Path
+) -> dict[str, Cell]:
+    """Train a net on rows of the pool and score it on the held-out hands and on val; folder: see `net_of`."""
+    from lightgesture.models.cnn import CnnClassifier
+    from lightgesture.training.nets.architectures import multiply_adds
+
+    model = net_of(study, name, rows, training, folder)
     classifier = CnnClassifier(model)
     seen = np.unique(study.pool.sources[rows])
     row: dict[str, Cell] = {

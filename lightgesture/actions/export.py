@@ -11,7 +11,7 @@ from lightgesture.errors import UsageError
 from lightgesture.export.constants import constants
 from lightgesture.export.files import FlatFiles, check_folder, write_folder
 from lightgesture.export.language import export_language
-from lightgesture.export.learned import cnn_constants, export_bank, export_svm, export_trees
+from lightgesture.export.learned import cnn_constants, export_bank, export_svm, export_trees, second_constants
 from lightgesture.export.nets import export_net
 from lightgesture.features.find import cells
 from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
@@ -62,6 +62,8 @@ def _export_classifiers(files: FlatFiles, model: str | None) -> None:
     hands = _find_sample_hands()
     patches = _cut(hands, cnn.model.patch)
     export_net(files, "cnn", cnn.model.network, cnn_constants(files, cnn.model, patches))
+    if cnn.model.second is not None:
+        export_net(files, "second", cnn.model.second.network, second_constants(cnn.model.second))
     export_svm(files, svm, _cut(hands, svm.model.features.patch))
 
 

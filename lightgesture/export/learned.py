@@ -13,7 +13,7 @@ from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.standardise import patch_levels
 from lightgesture.features.vector import feature_vectors
 from lightgesture.models.calibration import softmax
-from lightgesture.models.cnn import PATCH, CnnClassifier, CnnModel
+from lightgesture.models.cnn import MOST_DOUBTED, PATCH, SECOND_WEIGHT, CnnClassifier, CnnModel, SecondLook
 from lightgesture.models.svm import SvmClassifier
 
 Patches = NDArray[np.uint8]
@@ -105,6 +105,16 @@ def cnn_constants(files: FlatFiles, model: CnnModel, patches: Patches) -> dict[s
             "deviation": files.add_array("cnn", "contour_deviation", model.contour_deviation),
         }
     return content
+
+
+def second_constants(second: SecondLook) -> dict[str, Any]:
+    """When the larger net is asked, and how its answer is weighed."""
+    return {
+        "temperature": second.temperature,
+        "sure": second.sure,
+        "weight": SECOND_WEIGHT,
+        "most_doubted": MOST_DOUBTED,
+    }
 
 
 def leaves(trees: Trees, rows: NDArray[np.float32]) -> NDArray[np.int16]:

@@ -24,7 +24,7 @@ from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.nets import checkpoints
-from lightgesture.training.pool.patch_kinds import PoolSettings
+from lightgesture.training.pool.originals import PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool
 
 TOKENS = ("1", "5", "none")

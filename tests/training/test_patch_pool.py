@@ -11,14 +11,8 @@ from lightgesture.synth import crops
 from lightgesture.training.nets import hand_samples
 from lightgesture.training.nets.hand_samples import HandSamples, standardised
 from lightgesture.training.pool.negatives import Scene
-from lightgesture.training.pool.patch_kinds import (
-    HIDDEN,
-    KEPT,
-    KINDS,
-    MARGIN,
-    Originals,
-    PoolSettings,
-)
+from lightgesture.training.pool.originals import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import HIDDEN, KEPT, KINDS, MARGIN
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import LabelledHand
 

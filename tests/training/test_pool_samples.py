@@ -7,7 +7,7 @@ import pytest
 from lightgesture.features.patch import PatchSettings, cut_patch
 from lightgesture.synth import crops
 from lightgesture.training.pool.negatives import Scene
-from lightgesture.training.pool.patch_kinds import Originals, PoolSettings
+from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
 from lightgesture.training.pool.pool_samples import ALTERED_WEIGHT, pool_samples
 from lightgesture.training.pool.samples import LabelledHand

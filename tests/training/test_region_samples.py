@@ -9,8 +9,8 @@ import pytest
 from lightgesture.training.nets.locator_samples import LocatorSamples, make_targets, warp
 from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, hard_regions, target_edges
 from lightgesture.training.pictures import light
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.light import photometric
-from lightgesture.training.regions.trees import BoxedPicture
 
 
 def a_picture(boxes=((120, 80, 60, 80),)):
@@ -23,7 +23,7 @@ def a_picture(boxes=((120, 80, 60, 80),)):
 @pytest.mark.parametrize("seed", range(12))
 def test_a_drawn_ellipse_stays_in_its_box(seed):
     rng = np.random.default_rng(seed)
-    image, hands, _ = warp(a_picture(), rng, (0.6, 1.5))
+    image, hands, _, _ = warp(a_picture(), rng, (0.6, 1.5))
     x, y, width, height = cv2.boundingRect((image[..., 0] > 127).astype(np.uint8))
     seen = np.clip(hands[0], 0, (160, 120, 160, 120))
     assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=2.0)
@@ -35,7 +35,7 @@ def test_boxes_and_pictures_do_not_drift_apart():
     square[80:160, 120:180] = 255
     picture, offsets = replace(a_picture(), image=square), []
     for seed in range(40):
-        image, hands, _ = warp(picture, np.random.default_rng(seed), (0.6, 1.5))
+        image, hands, _, _ = warp(picture, np.random.default_rng(seed), (0.6, 1.5))
         corners = hands[0]
         if corners.min() < 3 or corners[2] > 157 or corners[3] > 117:
             continue  # the border may continue what it cuts

@@ -32,17 +32,23 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
         "the hands teaches what is no token",
     )
     parser.add_argument(
+        "--divers",
+        metavar="CSV",
+        help="pictures of real divers with boxes (columns file,sequence,kind,x,y,w,h,shape): their hands, and what dry "
+        "hands look like on a dive",
+    )
+    parser.add_argument(
         "--without",
         action="append",
         default=[],
         metavar="SOURCE",
-        help="source of the manifest (column set) that is left out; repeatable",
+        help="source of the manifest (column set) or dive (column sequence) that is left out; repeatable",
     )
     parser.add_argument(
         "--copies",
         type=whole,
         metavar="N",
-        help="altered copies of each hand, and a third as many mild ones (default: 24); time and disk grow",
+        help="altered copies of each hand, and a third as many mild ones (default: 16); time and disk grow",
     )
     parser.add_argument(
         "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default: 0)"

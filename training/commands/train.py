@@ -21,6 +21,10 @@ TARGETS = {
 """What can be trained: the module with its `add_arguments` and `run`, and its line of help."""
 
 
+PRECISIONS = ("float32", "bfloat16")
+"""Those of `training.nets.net_training`, which the commands do not import because it needs torch."""
+
+
 class Target(Protocol):
     """The interface of a module of `TARGETS`."""
 

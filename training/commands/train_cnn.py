@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING
 from lightgesture.config.parsers import whole
 from lightgesture.errors import UsageError
 from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
-from lightgesture.training.commands.train import model_path
+from lightgesture.training.commands.train import PRECISIONS, model_path
 
 if TYPE_CHECKING:
     from lightgesture.training.nets.cnn import CnnTraining
 
 SIZES = ("small", "medium", "large")
-PRECISIONS = ("float32", "bfloat16")
-"""Those of `training.nets.net_training`, which is not imported here because it needs torch."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,6 +77,7 @@ def _training(args: argparse.Namespace) -> "CnnTraining":
         data=Path(args.data),
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
+        divers=Path(args.divers) if args.divers else None,
         without=tuple(args.without),
         seed=args.seed,
         jobs=args.jobs,

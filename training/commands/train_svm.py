@@ -53,6 +53,7 @@ def run(args: argparse.Namespace) -> int:
         data=Path(args.data) if args.data else None,
         backgrounds=tuple(Path(folder) for folder in args.backgrounds),
         scenes=Path(args.scenes) if args.scenes else None,
+        divers=Path(args.divers) if args.divers else None,
         without=tuple(args.without),
         seed=args.seed,
         jobs=args.jobs,

@@ -122,7 +122,7 @@ def hand_nodes(classes: int, contours: int, size: str = "medium") -> tuple[Node,
     return (*nodes, Node(cnn.SCORES, "dense", (last,), classes))
 
 
-def teacher_nodes(classes: int, channels: tuple[int, int, int] = (32, 64, 112)) -> tuple[Node, ...]:
+def teacher_nodes(classes: int, channels: tuple[int, int, int] = (24, 48, 80)) -> tuple[Node, ...]:
     """A larger net for the same patches, which a hand net learns from; it never leaves the training."""
     fine, middle, coarse = channels
     return (
@@ -134,7 +134,7 @@ def teacher_nodes(classes: int, channels: tuple[int, int, int] = (32, 64, 112)) 
         *convolved("middle2", "middle1", middle, 2),
         Node("coarse", "conv", ("middle2",), coarse, 3, 2, "relu6"),
         *convolved("coarse1", "coarse", coarse, 2),
-        Node("whole", "dense", ("coarse1",), 128, activation="relu6"),
+        Node("whole", "dense", ("coarse1",), 96, activation="relu6"),
         Node(cnn.SCORES, "dense", ("whole",), classes),
     )
 

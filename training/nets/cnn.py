@@ -17,15 +17,13 @@ from lightgesture.training.card import held_out_section, make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
-from lightgesture.training.pool.kept_sources import LEAST_FITTED, held_out_hands, kept_out
-from lightgesture.training.pool.patch_kinds import (
-    CONTOUR,
-    MARGIN,
-    PATCH,
-    SMALLEST_HAND,
-    PoolSettings,
-    read_originals,
+from lightgesture.training.pool.kept_sources import (
+    LEAST_FITTED,
+    held_out_hands,
+    kept_out,
 )
+from lightgesture.training.pool.originals import PoolSettings, read_originals
+from lightgesture.training.pool.patch_kinds import CONTOUR, MARGIN, PATCH, SMALLEST_HAND
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
 from lightgesture.training.pool.samples import read_rows, rows_digest
 from lightgesture.training.samples import in_order
@@ -49,8 +47,10 @@ class CnnTraining:
     """Folders of pictures without hands."""
     scenes: Path | None = None
     """Table of whole pictures with boxes of hands and faces."""
+    divers: Path | None = None
+    """Table of pictures of real divers with their hands, see `pool.divers`."""
     without: tuple[str, ...] = ()
-    """Sources of `data` that are left out."""
+    """Sources of `data` and dives of `divers` that are left out."""
     seed: int = 0
     """Of everything drawn."""
     jobs: int = 1
@@ -82,6 +82,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     import torch
 
     from lightgesture.training.nets.architectures import multiply_adds
+    from lightgesture.training.nets.second_look import first_teacher, second_section, with_second_look
 
     started = time.monotonic()
     rows = read_rows(training.data, training.without)
@@ -93,7 +94,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     }
     folder = checkpoint_folder(out, request)
     progress(f"reading {len(rows)} hands")
-    originals = read_originals(rows, training.backgrounds, training.scenes)
+    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
     kept = kept_out(originals.hands)
     sources = np.array([hand.source for hand in originals.hands])
@@ -104,6 +105,10 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     if len(answers.truth) >= LEAST_FITTED:
         model = replace(model, temperature=fit_temperature(answers.probabilities, answers.truth))
     held_out = replace(answers, probabilities=softmax(answers.probabilities, model.temperature))
+    if training.teachers:
+        how = replace(net_settings(training), steps=training.teacher_steps)
+        second = first_teacher(learnt.samples, learnt.scale, how, training.seed, folder)
+        model, held_out = with_second_look(model, second, hands, held_out)
     in_floats = hands.answered(learnt.scores(hands.patches, CONTOUR))
     card = {
         "name": "cnn",
@@ -123,6 +128,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
             "multiply_adds": multiply_adds(model.network.inputs, model.network.nodes),
             "looks_at_the_outline": model.contour is not None,
             "temperature": model.temperature,
+            "second_look": second_section(model),
             "held_out_accuracy_in_floating_point": held_out_section(rows, in_floats, classes)["accuracy"],
         },
     }

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.standardise import EVENNESS, LARGEST
 from lightgesture.features.types import Float
+from lightgesture.models import NONE
+from lightgesture.training.pool.divers import SOURCE
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
 
@@ -44,6 +46,12 @@ def standardised(patches: NDArray[np.uint8]) -> Float:
     return np.asarray(np.clip(values, -LARGEST, LARGEST), np.float32)
 
 
+SHOWN_SHARE: Final = 0.06
+"""Of patches, those of signs that real divers show, where there are any: few pictures, each worth many others."""
+RESTING_SHARE: Final = 0.08
+"""Those of other hands and things on real dives."""
+
+
 class HandSamples:
     """Draws from the rows of a pool that are chosen, so that no person and no class rules."""
 
@@ -63,9 +71,9 @@ class HandSamples:
         self._truth = np.array([index[name] for name in pool.tokens[self._rows]], np.int64)
         # Beside the shapes that people show as no token, parts of hands and of rooms are a kind of their own.
         beside = np.where(pool.hands[self._rows] >= 0, "", " beside")
-        weights = sample_weights(self._truth, np.char.add(pool.sources[self._rows], beside)).astype(
-            np.float64
-        )
+        sources = pool.sources[self._rows]
+        weights = sample_weights(self._truth, np.char.add(sources, beside)).astype(np.float64)
+        weights = _with_divers(weights, np.char.startswith(sources, SOURCE), self._truth, self.classes)
         self._cumulative = np.cumsum(weights) / weights.sum()
 
     def __len__(self) -> int:
@@ -112,3 +120,20 @@ class HandSamples:
             height, width = random.integers(2, max(3, round(LARGEST_ERASED * size)), 2)
             top, left = random.integers(size - height + 1), random.integers(size - width + 1)
             seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)
+
+
+def _with_divers(
+    weights: NDArray[np.float64],
+    real: NDArray[np.bool_],
+    truth: NDArray[np.int64],
+    classes: Sequence[str],
+) -> NDArray[np.float64]:
+    """The weights, changed in place so that rows of real divers, `real`, have their shares."""
+    sign = np.array([name != NONE for name in classes], np.bool_)[truth]
+    left = 1.0
+    for chosen, share in ((real & sign, SHOWN_SHARE), (real & ~sign, RESTING_SHARE)):
+        if chosen.any():
+            weights[chosen] *= share / weights[chosen].sum()
+            left -= share
+    weights[~real] *= left / weights[~real].sum()
+    return weights

@@ -12,8 +12,9 @@ from lightgesture.features.find.locator import EDGES, HEAT, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import LOCATOR_INPUT, LOCATOR_OUTPUTS, locator_nodes
 from lightgesture.training.nets.locator_samples import LocatorSamples
-from lightgesture.training.nets.net_training import Batch, LoopSettings, giou, train_net
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
 from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 BATCH = 32
@@ -23,9 +24,15 @@ RATE = 2.5e-3
 
 
 def train_locator(
-    samples: LocatorSamples, steps: int, seed: int, checkpoint: Path, progress: Callable[[str], None]
+    samples: LocatorSamples,
+    steps: int,
+    precision: Precision,
+    start: IntegerNetwork | None,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
 ) -> IntegerNetwork:
-    """The trained net in integers."""
+    """The trained net in integers. start: a net to go on from, None to begin with random weights."""
     torch.manual_seed(seed)
     net = TorchNetwork({INPUT: LOCATOR_INPUT}, locator_nodes(), LOCATOR_OUTPUTS)
     # Hands are rare: a net that begins by saying so need not unlearn thousands of false peaks first.
@@ -41,7 +48,11 @@ def train_locator(
         weights = torch.from_numpy(np.stack([t.box_weight for t in targets]))
         return {INPUT: seen}, (*(torch.from_numpy(np.stack(m)) for m in maps), weights)
 
-    trained = train_net(net, batch, locator_loss, LoopSettings(steps, RATE), seed, checkpoint, progress)
+    if start is not None:
+        start_from(net, start, batch(np.random.default_rng((seed, steps)))[0])
+    rate = RATE if start is None else STARTED * RATE
+    loop = LoopSettings(steps, rate, precision=precision)
+    trained = train_net(net, batch, locator_loss, loop, seed, checkpoint, progress)
     typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
     return quantise(trained, typical, {INPUT: (-3.0, 3.0)})
 

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from lightgesture.features.find.locator import STRIDE
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Box, Float, Image
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.light import photometric
-from lightgesture.training.regions.trees import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDivers
 
 Random = np.random.Generator
 WIDTH, HEIGHT = 160, 120
@@ -21,11 +22,14 @@ FILLED = 128
 """Its height filled up to a multiple of 16."""
 
 
-REAL_SHARE: Final = 0.38
-EMPTY_SHARE: Final = 0.12
-"""Of samples, those of whole frames and of water without a hand; the rest is composed."""
+REAL_SHARE: Final = 0.30
+EMPTY_SHARE: Final = 0.10
+DIVER_SHARE: Final = 0.22
+"""Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
+would be of divers where there are none."""
 REAL_SCALE: Final = (0.6, 1.5)
 EMPTY_SCALE: Final = (0.7, 2.2)
+DIVER_SCALE: Final = (0.75, 2.4)
 COMPOSED_SCALE: Final = (0.75, 1.5)
 """Range of the size of each kind; 1 fills the working picture."""
 TURNED_SHARE: Final = 0.4
@@ -55,8 +59,10 @@ class Targets:
     box_weight: Float
 
 
-def warp(picture: BoxedPicture, rng: Random, scales: tuple[float, float]) -> tuple[Image, Float, Float]:
-    """A working picture of it, with the corners (x0, y0, x1, y1) of hands and faces, (n, 4) each."""
+def warp(
+    picture: BoxedPicture, rng: Random, scales: tuple[float, float]
+) -> tuple[Image, Float, Float, Float]:
+    """A working picture of it, with the corners (x0, y0, x1, y1) of hands, faces and what is ignored, (n, 4) each."""
     image = picture.image
     height, width = image.shape[:2]
     scale = min(WIDTH / width, HEIGHT / height) * float(np.exp(rng.uniform(*np.log(scales))))
@@ -73,7 +79,10 @@ def warp(picture: BoxedPicture, rng: Random, scales: tuple[float, float]) -> tup
     shift = middle - linear @ (np.array([width, height]) / 2)
     fill = cv2.BORDER_REPLICATE if rng.random() < 0.5 else cv2.BORDER_CONSTANT
     out = _transformed(image, linear, shift, scale, fill)
-    return out, moved(picture.boxes, linear, shift), moved(picture.faces, linear, shift)
+    hands, faces, ignored = (
+        moved(boxes, linear, shift) for boxes in (picture.boxes, picture.faces, picture.ignored)
+    )
+    return out, hands, faces, ignored
 
 
 def _transformed(
@@ -104,8 +113,9 @@ def moved(boxes: Sequence[Box], linear: NDArray[np.float64], shift: NDArray[np.f
     return np.concatenate([centres - reach, centres + reach], axis=1).astype(np.float32)
 
 
-def make_targets(hands: Float, faces: Float, all_faces: bool) -> Targets:
-    """Maps for corners (n, 4). Where not all faces are known, only cells round the known ones and on hands count."""
+def make_targets(hands: Float, faces: Float, all_faces: bool, ignored: Float | None = None) -> Targets:
+    """Maps for corners (n, 4). Where not all faces are known, only cells round the known ones and on hands count; on
+    what is ignored, no hand counts."""
     rows, columns = FILLED // STRIDE, WIDTH // STRIDE
     maps = Targets(
         np.zeros((2, rows, columns), np.float32),
@@ -117,14 +127,15 @@ def make_targets(hands: Float, faces: Float, all_faces: bool) -> Targets:
     best = np.zeros((rows, columns), np.float32)
     y, x = ((np.mgrid[0:rows, 0:columns] + 0.5) * STRIDE).astype(np.float32)
     limits = np.array([WIDTH, HEIGHT, WIDTH, HEIGHT], np.float32)
+    for corners in () if ignored is None else ignored:
+        _unlearn(maps, np.clip(corners, 0, limits))
     for corners in hands:
         seen = np.clip(corners, 0, limits)
         area, whole = _area(seen), _area(corners)
         if area <= 0:
             continue
         if area < LEAST_VISIBLE * whole or area < LEAST_SIDE**2:
-            left, top, right, bottom = (seen / STRIDE).astype(int)
-            maps.weight[0, top : bottom + 1, left : right + 1] = 0
+            _unlearn(maps, seen)
             continue
         spot = _spot(maps.heat[0], seen, x, y)
         near = (spot > best) & (spot > NEAR)
@@ -140,6 +151,11 @@ def make_targets(hands: Float, faces: Float, all_faces: bool) -> Targets:
             maps.weight[1][spot > 0.01] = 1
     maps.box_weight[maps.box.min(axis=0) <= 0] = 0
     return maps
+
+
+def _unlearn(maps: Targets, corners: Float) -> None:
+    left, top, right, bottom = (corners / STRIDE).astype(int)
+    maps.weight[0, top : bottom + 1, left : right + 1] = 0
 
 
 def _area(corners: Float) -> float:
@@ -165,9 +181,10 @@ class LocatorSamples:
         frames: Sequence[BoxedPicture],
         empty: Sequence[BoxedPicture],
         composed: Sequence[BoxedPicture],
+        divers: RealDivers | None = None,
     ) -> None:
-        """Each of the three holds at least one picture."""
-        self._frames, self._empty, self._composed = frames, empty, composed
+        """Each holds at least one picture."""
+        self._frames, self._empty, self._composed, self._divers = frames, empty, composed, divers
 
     def draw(self, rng: Random) -> tuple[Float, Targets]:
         """Standardised picture, float32 (128, 160, 3), and its targets."""
@@ -179,8 +196,10 @@ class LocatorSamples:
         elif kind < REAL_SHARE + EMPTY_SHARE:
             pictures, scales = self._empty, EMPTY_SCALE
         picture = pictures[int(rng.integers(len(pictures)))]
-        image, hands, faces = warp(picture, rng, scales)
+        if self._divers is not None and kind > 1.0 - DIVER_SHARE:
+            picture, scales = self._divers.draw(rng)[1], DIVER_SCALE
+        image, hands, faces, ignored = warp(picture, rng, scales)
         image = photometric(image, rng, in_air)
         seen = np.zeros((FILLED, WIDTH, 3), np.float32)
         seen[:HEIGHT] = cv2.LUT(image, channel_tables(image))
-        return seen, make_targets(hands, faces, picture.all_faces)
+        return seen, make_targets(hands, faces, picture.all_faces, ignored)

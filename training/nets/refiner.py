@@ -11,9 +11,10 @@ from torch.nn import functional
 from lightgesture.features.find.refiner import BOX, HAND, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import REFINER_INPUT, REFINER_OUTPUTS, refiner_nodes
-from lightgesture.training.nets.net_training import Batch, LoopSettings, giou, train_net
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
 from lightgesture.training.nets.quantise import quantise
 from lightgesture.training.nets.refiner_samples import RefinerSamples
+from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 PICTURES = 32
@@ -25,9 +26,15 @@ LEAST_SIDE = 0.02
 
 
 def train_refiner(
-    samples: RefinerSamples, steps: int, seed: int, checkpoint: Path, progress: Callable[[str], None]
+    samples: RefinerSamples,
+    steps: int,
+    precision: Precision,
+    start: IntegerNetwork | None,
+    seed: int,
+    checkpoint: Path,
+    progress: Callable[[str], None],
 ) -> IntegerNetwork:
-    """The trained net in integers."""
+    """The trained net in integers. start: a net to go on from, None to begin with random weights."""
     torch.manual_seed(seed)
     net = TorchNetwork({INPUT: REFINER_INPUT}, refiner_nodes(), REFINER_OUTPUTS)
 
@@ -36,7 +43,10 @@ def train_refiner(
         seen = torch.from_numpy(np.concatenate(windows)).permute(0, 3, 1, 2)
         return {INPUT: seen}, (torch.from_numpy(np.concatenate(targets)),)
 
-    loop = LoopSettings(steps, RATE, warm_up=200, mean=0.998)
+    if start is not None:
+        start_from(net, start, batch(np.random.default_rng((seed, steps)))[0])
+    rate = RATE if start is None else STARTED * RATE
+    loop = LoopSettings(steps, rate, warm_up=200, mean=0.998, precision=precision)
     trained = train_net(net, batch, refiner_loss, loop, seed, checkpoint, progress)
     typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
     return quantise(trained, typical, {INPUT: (-3.0, 3.0)})

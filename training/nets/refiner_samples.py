@@ -15,17 +15,20 @@ from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.patch import Square
 from lightgesture.features.standardise import channel_tables, luma_tables
 from lightgesture.features.types import Float, Image
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.light import photometric
-from lightgesture.training.regions.trees import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDivers
 
 Random = np.random.Generator
 
 
 WINDOWS: Final = 8
 """Of one picture."""
-REAL_SHARE: Final = 0.42
-EMPTY_SHARE: Final = 0.1
-"""Of samples, those of whole frames and of water without a hand; the rest is composed."""
+REAL_SHARE: Final = 0.32
+EMPTY_SHARE: Final = 0.08
+DIVER_SHARE: Final = 0.25
+"""Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
+would be of divers where there are none."""
 HAND, HARD, BESIDE, FACE = 0.55, 0.85, 0.93, 0.97
 """Up to which draw a window lies on a hand, on a false peak, beside a hand, on a face; beyond, anywhere."""
 JITTER: Final = 0.1
@@ -113,8 +116,12 @@ class RefinerSamples:
         frames: Sequence[tuple[BoxedPicture, Float]],
         empty: Sequence[tuple[BoxedPicture, Float]],
         composed: Sequence[tuple[BoxedPicture, Float]],
+        divers: RealDivers | None = None,
+        mistaken: Sequence[Float] = (),
     ) -> None:
+        """mistaken: boxes of false peaks of each of the divers' pictures."""
         self._frames, self._empty, self._composed = frames, empty, composed
+        self._divers, self._mistaken = divers, mistaken
 
     def draw(self, rng: Random) -> tuple[Float, Float]:
         """Windows, float32 (n, 32, 32, 4), and targets (n, 6): hand or not, four edges, weight."""
@@ -123,10 +130,14 @@ class RefinerSamples:
         if kind < REAL_SHARE + EMPTY_SHARE:
             pictures = self._frames if kind < REAL_SHARE else self._empty
         picture, hard = pictures[int(rng.integers(len(pictures)))]
+        if self._divers is not None and kind > 1.0 - DIVER_SHARE:
+            place, picture = self._divers.draw(rng)
+            hard = self._mistaken[place]
         image = photometric(picture.image, rng, kind < REAL_SHARE)
         tables = channel_tables(image)
         hands = np.array(picture.boxes, np.float64).reshape(-1, 4)
         faces = np.array(picture.faces, np.float64).reshape(-1, 4)
+        ignored = np.array(picture.ignored, np.float64).reshape(-1, 4)
         windows, targets = [], []
         for _ in range(WINDOWS):
             box = self._box(rng, hands, np.asarray(hard, np.float64), faces, image.shape[:2])
@@ -135,7 +146,10 @@ class RefinerSamples:
             flip = bool(rng.random() < 0.5)
             cut = cut_turned(image, window, SIZE, turn, flip)
             windows.append(standardised(cut, tables))
-            targets.append(self._target(box, hands, window, turn, flip))
+            target = self._target(box, hands, window, turn, flip)
+            if target[0] == 0.0 and len(ignored) and pairwise_iou(box[None], ignored).max() >= NONE_IOU:
+                target[5] = 0.0
+            targets.append(target)
         return np.stack(windows), np.stack(targets)
 
     def _target(

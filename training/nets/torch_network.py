@@ -37,25 +37,28 @@ class TorchNetwork(nn.Module):
         """Inputs and what every node gives, by name."""
         tensors = dict(inputs)
         for node in self.nodes:
-            tensors[node.name] = self._compute(node, [tensors[name] for name in node.inputs])
+            tensors[node.name] = self.compute(node, [tensors[name] for name in node.inputs])
         return tensors
 
-    def _compute(self, node: Node, sources: list[Tensor]) -> Tensor:
+    def compute(self, node: Node, sources: list[Tensor]) -> Tensor:
+        """What a node gives for what it takes."""
         if node.op == "upsample":
             return functional.interpolate(sources[0], scale_factor=2.0, mode="nearest")
-        if node.op == "add":
-            values = sources[0] + sources[1]
-        elif node.op == "dense":
-            flat = sources[0]
-            if flat.ndim == 4:
-                # The board keeps channels last, and so do the weights of a dense layer.
-                flat = flat.permute(0, 2, 3, 1).flatten(1)
-            values = self.layers[node.name](flat)
-        else:
-            values = self.layers[node.name](_padded(sources[0], node))
+        values = sources[0] + sources[1] if node.op == "add" else self.weighted(node, sources[0])
         if node.name in self.norms:
             values = self.norms[node.name](values)
         return functional.relu6(values) if node.activation == "relu6" else values
+
+    def weighted(self, node: Node, source: Tensor) -> Tensor:
+        """What a node's weights make of its input, before normalisation and activation."""
+        if node.op != "dense":
+            values: Tensor = self.layers[node.name](_padded(source, node))
+            return values
+        if source.ndim == 4:
+            # The board keeps channels last, and so do the weights of a dense layer.
+            source = source.permute(0, 2, 3, 1).flatten(1)
+        flat: Tensor = self.layers[node.name](source)
+        return flat
 
 
 def _padded(values: Tensor, node: Node) -> Tensor:

@@ -5,7 +5,7 @@ copies turn, stretch and mirror the hand, exchange what stands behind it, put it
 bright window, and shift its box as a selector would.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -14,12 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image
+from lightgesture.models import NONE
 from lightgesture.training.pictures.cutouts import draw_hand
 from lightgesture.training.pictures.light import LightSettings, relight
 from lightgesture.training.pool.samples import LabelledHand, landmark_box
 
 MIRRORED_TOKENS = {"left": "right", "right": "left"}
 """A mirrored thumb points the other way; every other sign keeps its name."""
+
+UPRIGHT = {*MIRRORED_TOKENS, NONE}
+"""What lying on its side may turn into something else: a thumb up becomes a thumb to the side."""
+LYING: Final = (55.0, 100.0)
+"""Degrees by which a hand is turned that lies on its side."""
 
 Random = np.random.Generator
 
@@ -42,6 +48,8 @@ class AugmentSettings:
     """Share of mirrored copies, 0 to 1."""
     rotation: float = 14.0
     """Standard deviation, degrees, 0 to 90."""
+    lying: float = 0.0
+    """Share of copies, 0 to 1, that lie on their side, of signs that are the same there."""
     stretch: float = 0.14
     """Standard deviation of the logarithm of the aspect, 0 to 0.5."""
     narrowed: float = 0.0
@@ -90,12 +98,21 @@ class _Canvas:
     landmarks: NDArray[np.float32] | None
 
 
+Finish = Callable[[Image, NDArray[np.float32] | None, Random], Image]
+"""What is done to a copy at last: picture, mask of the hand where known, generator -> picture."""
+
+
 def augment(
-    hand: LabelledHand, backgrounds: Sequence[Image], settings: AugmentSettings, random: Random
+    hand: LabelledHand,
+    backgrounds: Sequence[Image],
+    settings: AugmentSettings,
+    random: Random,
+    finish: Finish | None = None,
 ) -> tuple[Image, Box, str]:
     """One altered copy: picture, uint8 (CANVAS, CANVAS, 3), box of the hand in it with an error, token.
 
-    backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand.
+    backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand. finish: instead of other
+    light.
     """
     canvas = _turned(hand, settings, random)
     token = hand.token
@@ -108,7 +125,7 @@ def augment(
         mask = hand_mask(canvas.landmarks, CANVAS, FINGER_WIDTH)
         if len(backgrounds) and random.random() < settings.background:
             image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
-    image = relight(image, mask, settings.light, random)
+    image = relight(image, mask, settings.light, random) if finish is None else finish(image, mask, random)
     return image, shifted_box(_box(canvas), settings, random), token
 
 
@@ -138,6 +155,8 @@ def _turned(hand: LabelledHand, settings: AugmentSettings, random: Random) -> _C
     """The hand turned, stretched and sheared about the middle of its box, drawn on the canvas."""
     x, y, width, height = hand.box
     angle = np.deg2rad(random.normal(0.0, settings.rotation))
+    if settings.lying and hand.token not in UPRIGHT and random.random() < settings.lying:
+        angle += np.deg2rad(random.uniform(*LYING) * random.choice((-1.0, 1.0)))
     aspect = np.exp(random.normal(0.0, settings.stretch))
     if settings.narrowed and random.random() < settings.narrowed:
         aspect *= random.uniform(NARROWEST, 1.0)

@@ -65,18 +65,21 @@ class Composite:
     sources: frozenset[str]
 
 
-def _paste(
-    canvas: Float, cutout: Cutout, centre: tuple[float, float], height: float, turn: float
+def paste(
+    canvas: Float, cutout: Cutout, centre: tuple[float, float], height: float, turn: float, blur: float = 0.0
 ) -> Box | None:
     """Put a hand on the canvas (values 0 to 1), `height` pixels high and turned by `turn` degrees; the box
-    of what can be seen of it, None where that is less than two thirds."""
+    of what can be seen of it, None where that is less than two thirds. blur: its standard deviation, pixels."""
     x, y, w, h = cutout.box
     scale = height / max(h, 0.75 * w)
     matrix = cv2.getRotationMatrix2D((x + w / 2, y + h / 2), turn, scale)
     matrix[:, 2] += np.array([centre[0] - x - w / 2, centre[1] - y - h / 2])
     size = canvas.shape[1], canvas.shape[0]
     alpha = np.asarray(cv2.warpAffine(cutout.alpha, matrix, size, flags=cv2.INTER_AREA), np.float32)
-    image = cv2.warpAffine(cutout.image, matrix, size, flags=cv2.INTER_AREA).astype(np.float32) / 255.0
+    image = np.asarray(cv2.warpAffine(cutout.image, matrix, size, flags=cv2.INTER_AREA), np.float32) / 255.0
+    if blur:
+        alpha = np.asarray(cv2.GaussianBlur(alpha, (0, 0), blur), np.float32)
+        image = np.asarray(cv2.GaussianBlur(image, (0, 0), blur), np.float32)
     canvas += alpha[..., None] * (image - canvas)
     visible = (alpha > 0.5).astype(np.uint8)
     if visible.sum() < 0.67 * (cutout.alpha > 0.5).sum() * scale * scale:
@@ -173,7 +176,7 @@ class Composer:
             faces = (draw_body(person, axis, shoulder, unit, wrists, skin, BARE_ARM_SHARE, rng),)
         boxes, tokens = [], []
         for hand, place in chosen:
-            box = _paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))
+            box = paste(person, hand, place, unit * rng.uniform(0.85, 1.15), rng.normal(0, 10))
             if box is not None:
                 boxes.append(box)
                 tokens.append(hand.token)

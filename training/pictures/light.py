@@ -48,6 +48,8 @@ class LightSettings:
     """Share of blurred copies, 0 to 1."""
     widest_blur: float = 1.6
     """Standard deviation of the widest blur, pixels, from 0.3."""
+    grey: float = 0.0
+    """Share of copies without colour, 0 to 1: under water a hand is hardly redder than what stands behind it."""
     noise: float = 8.0
     """Largest standard deviation of the noise, grey levels of 255."""
 
@@ -57,6 +59,8 @@ def relight(image: Image, mask: Float | None, settings: LightSettings, random: R
     picture = image.astype(np.float32) * np.float32(1 / 255)
     if mask is not None and random.random() < settings.backlit:
         picture = _backlit(picture, mask, random)
+    if settings.grey and random.random() < settings.grey:
+        picture = np.repeat(picture.mean(axis=2, keepdims=True), 3, axis=2)
     picture = _exposed(picture, settings, random)
     if random.random() < settings.water:
         picture = np.asarray(path_before_hand(random).see(picture), np.float32)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lightgesture.features.patch import cut_patch
 from lightgesture.models.cnn import CnnModel
 from lightgesture.training.datasets import fold_of
-from lightgesture.training.pool.patch_kinds import Originals
+from lightgesture.training.pool.originals import Originals
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.pool.samples import LabelledHand
 

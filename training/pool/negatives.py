@@ -76,12 +76,12 @@ def read_scenes(manifest: Path) -> list[Scene]:
     for line, row in table_rows(manifest, ("file", "x", "y", "w", "h"), "see --scenes"):
         path = picture_path(manifest.parent, row["file"])
         try:
-            hands.setdefault(path, []).append(_box([row[name] for name in ("x", "y", "w", "h")]))
-            faces[path] = [_box(text.split(",")) for text in _texts(row)]
+            hands.setdefault(path, []).append(box_of([row[name] for name in ("x", "y", "w", "h")]))
+            faces[path] = [box_of(text.split(",")) for text in _texts(row)]
         except (ValueError, OverflowError) as error:
             raise InputError(f"{manifest}, line {line}: holds no box ({error}); correct it") from None
         sources[path] = row.get("set") or "scenes"
-    return [_scene(path, hands[path], faces[path], sources[path]) for path in hands]
+    return [boxed_scene(read_picture(path), hands[path], faces[path], sources[path]) for path in hands]
 
 
 def negatives(scenes: Sequence[Scene], random: Random) -> Iterator[TrainingSample]:
@@ -113,10 +113,11 @@ def missed_hand(hand: LabelledHand, random: Random) -> TrainingSample | None:
     return TrainingSample(image=hand.image, box=box, side=hand.side, token=NONE, source=hand.source)
 
 
-def _scene(path: Path, hands: list[Box], faces: list[Box], source: str) -> Scene:
-    image, scale = _reduced(read_picture(path))
+def boxed_scene(image: Image, hands: Sequence[Box], faces: Sequence[Box], source: str) -> Scene:
+    """A whole picture with its boxes, reduced."""
+    image, scale = _reduced(image)
 
-    def scaled(boxes: list[Box]) -> tuple[Box, ...]:
+    def scaled(boxes: Sequence[Box]) -> tuple[Box, ...]:
         return tuple(_as_boxes(np.array(boxes, np.float64).reshape(-1, 4) * scale))
 
     return Scene(image, scaled(hands), scaled(faces), source)
@@ -154,7 +155,8 @@ def _texts(row: dict[str, str]) -> list[str]:
     return [text for text in (row.get("face_boxes") or "").split(";") if text]
 
 
-def _box(texts: Sequence[str]) -> Box:
+def box_of(texts: Sequence[str]) -> Box:
+    """Left, top, width and height from a table's cells. Raises ValueError, OverflowError."""
     x, y, width, height = (round(float(text)) for text in texts)
     if width <= 0 or height <= 0:
         raise ValueError(f"box {x},{y},{width},{height} has no area")

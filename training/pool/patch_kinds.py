@@ -1,30 +1,21 @@
 """What a pool of patches is made of: copies of hands, hidden hands, regions that are no hand, rendered hands."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from pathlib import Path
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Final
 
-import cv2
 import numpy as np
 
 from lightgesture.features.outline.contours import ContourSettings
 from lightgesture.features.patch import PatchSettings
-from lightgesture.features.types import Image
-from lightgesture.models import CLASSES, NONE
+from lightgesture.models import NONE
 from lightgesture.synth.crops import CropMaker, CropSettings
-from lightgesture.training.pictures.augment import (
-    CANVAS,
-    MILD,
-    MIRRORED_TOKENS,
-    AugmentSettings,
-    augment,
-    shifted_box,
-)
+from lightgesture.training.pictures.augment import MILD, AugmentSettings, augment, shifted_box
 from lightgesture.training.pictures.hidden_hands import hide
-from lightgesture.training.pictures.light import relight
-from lightgesture.training.pool.negatives import Scene, missed_hand, negatives, read_backgrounds, read_scenes
-from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
+from lightgesture.training.pool.altered import altered, behind, relit
+from lightgesture.training.pool.diver_kinds import resting, sea, shown
+from lightgesture.training.pool.negatives import missed_hand, negatives
+from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.samples import TrainingSample
 
 Random = np.random.Generator
@@ -53,102 +44,25 @@ RENDERED_SOURCE: Final = "synthetic"
 """Beginning of these names."""
 
 
-@dataclass(frozen=True, slots=True)
-class PoolSettings:
-    """How much is drawn and how."""
-
-    copies: int = 24
-    """Altered copies of each hand, 1 to 100; time and disk grow with them."""
-    mild_share: float = 1 / 3
-    """Copies of each hand besides that are hardly altered, over `copies`, 0 to 1; none read plain pictures worse."""
-    rounds: int = 8
-    """How often regions that are no hand are drawn from each picture, 1 to 100."""
-    rendered: int = 12000
-    """Rendered hands beside the real ones, of the signs that both know."""
-    augment: AugmentSettings = field(
-        default_factory=lambda: AugmentSettings(
-            rotation=18.0, scale=0.11, shift=0.06, narrowed=0.2, background=0.6
-        )
-    )
-    """How far copies go; mild copies go as far as `augment.MILD`."""
-
-    @property
-    def mild_copies(self) -> int:
-        """Of each hand."""
-        return round(self.mild_share * self.copies)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Originals:
-    """What copies are made of. hands: labelled. backgrounds: pictures without hands. scenes: whole pictures."""
-
-    hands: Sequence[LabelledHand]
-    backgrounds: Sequence[Scene] = ()
-    scenes: Sequence[Scene] = ()
-
-    @property
-    def rendered_classes(self) -> frozenset[str]:
-        """Classes of which rendered hands can be had, all where there are no hands.
-
-        Beside own signs there is no rendered `none`: shapes that the ten tokens lack may be just these signs.
-        """
-        found = {hand.token for hand in self.hands}
-        known = found & set(CLASSES) if found else set(CLASSES)
-        return frozenset(known - {NONE} if found - known else known)
-
-
-def read_originals(rows: Sequence[HandRow], backgrounds: Sequence[Path], scenes: Path | None) -> Originals:
-    """All pictures that a classifier is trained on, read once.
-
-    backgrounds: folders of pictures without hands. scenes: table of whole pictures with boxes of hands and faces.
-    Raises InputError.
-    """
-    return Originals(
-        [load_hand(row) for row in rows],
-        [scene for folder in backgrounds for scene in read_backgrounds(folder)],
-        read_scenes(scenes) if scenes else (),
-    )
-
-
 Draw = Callable[[Originals, PoolSettings, int, int, Random], Iterator[TrainingSample]]
 
 
 def _copies(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    return _altered(originals, settings.augment, first, last, random)
+    return altered(originals, originals.hands[first:last], settings.augment, random)
 
 
 def _mild(
     originals: Originals, _settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    return _altered(originals, MILD, first, last, random)
-
-
-def _altered(
-    originals: Originals, settings: AugmentSettings, first: int, last: int, random: Random
-) -> Iterator[TrainingSample]:
-    pictures = _behind(originals)
-    tokens = {hand.token for hand in originals.hands}
-    unmirrored = replace(settings, mirror=0.0)
-    for hand in originals.hands[first:last]:
-        known = MIRRORED_TOKENS.get(hand.token, hand.token) in tokens
-        image, box, token = augment(hand, pictures, settings if known else unmirrored, random)
-        yield TrainingSample(
-            image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
-        )
-
-
-def _behind(originals: Originals) -> list[Image]:
-    """What may stand behind a hand: water and rooms, or where there is neither, what stands behind other hands."""
-    scenes = [scene.image for scene in (*originals.backgrounds, *originals.scenes)]
-    return scenes or [one.image for one in originals.hands]
+    return altered(originals, originals.hands[first:last], MILD, random)
 
 
 def _hidden(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    pictures = _behind(originals)
+    pictures = behind(originals)
     for hand in originals.hands[first:last]:
         if random.random() < HIDDEN:
             image, box, _ = augment(hand, pictures, settings.augment, random)
@@ -165,19 +79,19 @@ def _missed(
         if random.random() < MISSED:
             region = missed_hand(hand, random)
             if region is not None:
-                yield _relit(region, settings, random)
+                yield relit(region, settings.augment.light, random)
 
 
 def _regions(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
-    scenes = [*originals.backgrounds, *originals.scenes]
+    scenes = [*originals.backgrounds, *originals.scenes, *originals.divers.scenes]
     for number in range(first, last):
         for region in negatives(scenes[number : number + 1], random):
             if not scenes[number].hands:
                 # Water differs from picture to picture as people do from source to source, and weighs like them.
                 region = replace(region, source=f"{region.source} {number}")
-            yield _relit(region, settings, random)
+            yield relit(region, settings.augment.light, random)
 
 
 def _rendered(
@@ -214,27 +128,10 @@ KINDS: Mapping[str, Draw] = {
     "rendered": _rendered,
     "hidden": _hidden,
     "mild": _mild,
+    "sea": sea,
+    "shown": shown,
+    "resting": resting,
 }
 """What draws the samples of a kind from the originals `first` to `last`; the place in this table seeds it."""
-COPIED = ("hands", "mild")
+COPIED = ("hands", "mild", "sea")
 """Kinds with one sample for each hand."""
-
-
-def _relit(region: TrainingSample, settings: PoolSettings, random: Random) -> TrainingSample:
-    """A region cut out with something around it and in other light."""
-    x, y, width, height = region.box
-    reach = max(width, height)
-    rows, columns = region.image.shape[:2]
-    left, top = max(0, x - reach), max(0, y - reach)
-    part = region.image[top : min(rows, y + height + reach), left : min(columns, x + width + reach)]
-    scale = min(1.0, 1.5 * CANVAS / max(part.shape[:2]))
-    if scale < 1.0:
-        part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8)
-    box = (
-        round((x - left) * scale),
-        round((y - top) * scale),
-        max(2, round(width * scale)),
-        max(2, round(height * scale)),
-    )
-    image = relight(part, None, settings.augment.light, random)
-    return replace(region, image=image, box=box, original=False)

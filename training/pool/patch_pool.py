@@ -19,14 +19,13 @@ from lightgesture.features.outline.contours import contour_length, contour_vecto
 from lightgesture.features.patch import cut_patch
 from lightgesture.models import NONE
 from lightgesture.results.atomic import replacing
+from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.pool.patch_kinds import (
     CONTOUR,
     COPIED,
     KEPT,
     KINDS,
     MARGIN,
-    Originals,
-    PoolSettings,
 )
 
 Progress = Callable[[str, int, int], None]
@@ -123,13 +122,17 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
             for first in range(0, count, HANDS_A_TASK)
         ]
 
+    divers = originals.divers
     tasks = parts("hands", len(originals.hands), settings.copies)
     if not originals.hands or any(hand.token == NONE for hand in originals.hands):
-        scenes = len(originals.backgrounds) + len(originals.scenes)
+        scenes = len(originals.backgrounds) + len(originals.scenes) + len(divers.scenes)
         tasks += parts("regions", scenes, settings.rounds)
         tasks += parts("missed", len(originals.hands), settings.rounds)
         tasks += parts("hidden", len(originals.hands), settings.rounds)
+        tasks += parts("resting", len(divers.resting), settings.resting_copies)
     tasks += parts("mild", len(originals.hands), settings.mild_copies)
+    tasks += parts("sea", len(originals.hands) if divers.looks else 0, settings.sea_copies)
+    tasks += parts("shown", len(divers.shown), settings.shown_copies)
     return tasks + parts("rendered", settings.rendered if originals.rendered_classes else 0, 1)
 
 

@@ -11,10 +11,10 @@ import cv2
 import numpy as np
 
 from lightgesture.results.atomic import replacing
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.composites import SIZE, Background, Composite
 from lightgesture.training.pictures.cutouts import Cutout
 from lightgesture.training.pictures.diver_composites import DiverComposer
-from lightgesture.training.regions.trees import BoxedPicture
 
 PICTURES_A_TASK = 8
 _worker: tuple[DiverComposer, int] | None = None

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from lightgesture.features.patch import PatchSettings
 from lightgesture.features.types import Box
-from lightgesture.training.pool.patch_kinds import MARGIN, PATCH, Originals, PoolSettings
+from lightgesture.training.pool.divers import SOURCE
+from lightgesture.training.pool.originals import Originals, PoolSettings
+from lightgesture.training.pool.patch_kinds import MARGIN, PATCH
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.samples import TrainingSample
 
@@ -59,11 +61,13 @@ def pool_samples(
 
 
 def _mild_rows(pool: PatchPool, hands: int, settings: PoolSettings) -> NDArray[np.bool_]:
-    """Which rows are mild copies: of all copies, in the pool's order, those after the `copies` of every hand."""
+    """Which rows are mild copies: of all copies, in the pool's order, those after the `copies` of every hand;
+    copies of real divers' signs, which are no copies of hands, count as much."""
     copies = np.flatnonzero(pool.hands >= 0)
     mild = np.zeros(len(pool.hands), bool)
-    mild[copies[hands * settings.copies :]] = True
-    return mild
+    first = hands * settings.copies
+    mild[copies[first : first + hands * settings.mild_copies]] = True
+    return mild | np.char.startswith(pool.sources, SOURCE)
 
 
 def _whole(patch: PatchSettings) -> Box:

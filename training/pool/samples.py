@@ -97,7 +97,11 @@ def rows_digest(rows: Sequence[HandRow]) -> str:
 
 def load_hand(row: HandRow) -> LabelledHand:
     """Read a row's picture and keep the hand with what stands around it, at most `KEPT_PIXELS` wide."""
-    image = read_picture(row.path)
+    return cut_hand(read_picture(row.path), row)
+
+
+def cut_hand(image: Image, row: HandRow) -> LabelledHand:
+    """A row's hand in its picture, likewise."""
     rows, columns = image.shape[:2]
     x, y, width, height = row.box or (0, 0, columns, rows)
     if x >= columns or y >= rows or x + width <= 0 or y + height <= 0:

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from lightgesture.features.types import Box, Image
+from lightgesture.models import CLASSES
 from lightgesture.sources import read_picture
 from lightgesture.training.datasets import (
     Sample,
@@ -19,11 +20,13 @@ from lightgesture.training.datasets import (
     read_table,
     read_webcam,
 )
+from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.composites import Background
 from lightgesture.training.pictures.cutouts import Cutout, cut_out
 from lightgesture.training.pictures.light import attenuate, expose
+from lightgesture.training.pictures.real_divers import RealDiver
+from lightgesture.training.pool.divers import SOURCE, UNNAMED, diver_pictures
 from lightgesture.training.pool.left_out import LeftOut
-from lightgesture.training.regions.trees import BoxedPicture
 
 CUTOUTS_PER_SOURCE: Final = 16
 """Most hands cut out of one source, so that no person rules."""
@@ -31,6 +34,8 @@ LONGEST_SIDE: Final = 320
 """Whole frames are reduced to so many pixels first."""
 NEGATIVE_SETS: Final = ("funie", "rov25", "u45")
 """Sets of `negatives` that are trained on; all others stay unseen for the report."""
+DIVERS: Final = "divers/boxes.csv"
+"""Table of real divers within the data folder; they are left out where there is none."""
 NEVER: Final = frozenset({"emre_drone"})
 """Sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures would not count
 otherwise."""
@@ -38,11 +43,13 @@ otherwise."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Material:
-    """All that is trained on. frames: people in rooms with boxed hands. empty: water without a hand. hands: cut out."""
+    """All that is trained on. frames: people in rooms with boxed hands. empty: water without a hand. hands: cut out.
+    divers: real ones."""
 
     frames: list[BoxedPicture]
     empty: list[BoxedPicture]
     hands: list[Cutout]
+    divers: list[RealDiver]
 
     def parted(self, one_in: int) -> tuple["Material", "Material"]:
         """Most of it, and one in so many: of people by source, so that nobody is in both, of empty frames by number."""
@@ -56,11 +63,13 @@ class Material:
                 [one for one, is_own in zip(self.frames, second, strict=True) if not is_own],
                 [one for index, one in enumerate(self.empty) if index % one_in],
                 [one for one in self.hands if not is_second(one.source)],
+                [one for one in self.divers if not any(map(is_second, one.picture.sources))],
             ),
             Material(
                 [one for one, is_own in zip(self.frames, second, strict=True) if is_own],
                 self.empty[::one_in],
                 [one for one in self.hands if is_second(one.source)],
+                [one for one in self.divers if any(map(is_second, one.picture.sources))],
             ),
         )
 
@@ -79,6 +88,7 @@ def read_material(data: Path, without: LeftOut, seed: int) -> Material:
         whole_frames(data, without),
         negatives(data, without),
         cutouts(data, without, seed),
+        real_divers(data, without),
     )
 
 
@@ -96,6 +106,24 @@ def negatives(data: Path, without: LeftOut) -> list[BoxedPicture]:
         for one in read_negatives(data)
         if one.source in NEGATIVE_SETS and not without.covers(one.source)
     ]
+
+
+def real_divers(data: Path, without: LeftOut) -> list[RealDiver]:
+    """All of `divers`, at the camera's resolution; hands that nobody could name are neither hands nor none."""
+    table = data / DIVERS
+    if not table.is_file():
+        return []
+    found = []
+    for path, picture in diver_pictures(table).items():
+        source = f"{SOURCE} {picture.sequence}"
+        if not without.covers(source):
+            hands = tuple(one.box for one in picture.hands if one.shape != UNNAMED)
+            ignored = tuple(one.box for one in picture.hands if one.shape == UNNAMED)
+            boxed = BoxedPicture(
+                read_picture(path), hands, tuple(picture.faces), False, frozenset({source}), ignored
+            )
+            found.append(RealDiver(boxed, any(one.shape in CLASSES for one in picture.hands)))
+    return found
 
 
 def cutouts(data: Path, without: LeftOut, seed: int) -> list[Cutout]:

@@ -1,22 +1,25 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
+import hashlib
 import json
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import cv2
 import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, SelectorError, load_learned
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
+from lightgesture.training.pictures.boxed import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDivers
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
@@ -27,13 +30,15 @@ from lightgesture.training.regions.region_pictures import (
     variants,
 )
 from lightgesture.training.regions.trees import (
-    BoxedPicture,
     fit_pairs,
     fit_place_pairs,
     fit_places,
     fit_regions,
     look,
 )
+
+if TYPE_CHECKING:
+    from lightgesture.training.nets.net_training import Precision
 
 Progress = Callable[[str], None]
 
@@ -57,6 +62,20 @@ class RegionTraining:
     """Steps of the optimiser, 1 or more."""
     refiner_steps: int = 8000
     """Likewise."""
+    precision: "Precision" = "float32"
+    """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
+    start: Path | None = None
+    """Selector whose nets go on learning; None to begin with random weights."""
+
+    @property
+    def origin(self) -> str | None:
+        """SHA-256 of that file. Raises SelectorError."""
+        if self.start is None:
+            return None
+        try:
+            return hashlib.sha256(self.start.read_bytes()).hexdigest()
+        except OSError as error:
+            raise SelectorError(f"{self.start}: cannot be read ({error.strerror})") from error
 
 
 def train_regions(
@@ -75,7 +94,8 @@ def train_regions(
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
-    folder = checkpoint_folder(out, {"seed": seed, CARD_KEY: without.to_card(), "settings": repr(settings)})
+    told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
+    folder = checkpoint_folder(out, {"seed": seed, **told})
     progress("reading whole frames and cutting out hands")
     material = read_material(data, without, seed)
     for_nets, for_trees = material.parted(ONE_IN)
@@ -114,14 +134,20 @@ def _learned(
     from lightgesture.training.nets.refiner import train_refiner
     from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
 
-    samples = LocatorSamples(material.frames, material.empty, composed)
-    locator = train_locator(samples, settings.locator_steps, seed, folder / "locator.pt", progress)
+    divers = RealDivers(material.divers, material.hands) if material.divers else None
+    begun = None if settings.start is None else load_learned(settings.start)
+    first, second = (begun.locator, begun.refiner) if begun else (None, None)
+    steps, precision = settings.locator_steps, settings.precision
+    samples = LocatorSamples(material.frames, material.empty, composed, divers)
+    locator = train_locator(samples, steps, precision, first, seed, folder / "locator.pt", progress)
     progress("searching for what the locator mistakes")
     frames, empty, hard = (
         hard_regions(part, locator) for part in (material.frames, material.empty, composed)
     )
-    windows = RefinerSamples(frames, empty, hard)
-    return locator, train_refiner(windows, settings.refiner_steps, seed, folder / "refiner.pt", progress)
+    mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
+    windows = RefinerSamples(frames, empty, hard, divers, mistaken)
+    steps = settings.refiner_steps
+    return locator, train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)
 
 
 def _tree_pictures(
@@ -129,7 +155,7 @@ def _tree_pictures(
 ) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
     """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
     rng = np.random.default_rng(seed)
-    single = [*material.empty, *unseen]
+    single = [*material.empty, *unseen, *(one.picture for one in material.divers if not one.picture.ignored)]
     whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
     parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
     for place, index in enumerate(order):
@@ -156,6 +182,7 @@ def _classical(
         for picture in material.frames:
             yield from variants(picture, rng)
         yield from material.empty
+        yield from (one.picture for one in material.divers if not one.picture.ignored)
         yield from composed[: len(composed) // 2]
 
     regions = fit_regions(region_pictures(), bank, seed)
@@ -163,7 +190,12 @@ def _classical(
 
 
 def _write_card(
-    out: Path, seed: int, without: LeftOut, settings: RegionTraining, material: Material, seconds: float
+    out: Path,
+    seed: int,
+    without: LeftOut,
+    settings: RegionTraining,
+    material: Material,
+    seconds: float,
 ) -> None:
     import sklearn
     import torch
@@ -174,6 +206,7 @@ def _write_card(
             "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
             "hands cut out of hands/train": len(material.hands),
             "underwater frames without a hand": len(material.empty),
+            "real divers (divers)": len(material.divers),
             "composed pictures": COMPOSED + UNSEEN,
             "sets of negatives used": list(NEGATIVE_SETS),
             "kept from the nets, for the trees": f"one in {ONE_IN} sources",
@@ -182,8 +215,9 @@ def _write_card(
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
-        "limits": "bare hands in air; water, darkness and divers are composed; gloves were not seen",
+        "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
         "seed": seed,
+        "nets_went_on_from_the_selector_of_sha256": settings.origin,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": round(seconds),
         "peak_memory_mib": peak_memory_mib(),

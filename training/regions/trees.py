@@ -26,7 +26,8 @@ from lightgesture.features.find.proposals import Proposals, propose
 from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.trees import Trees, evaluate
 from lightgesture.features.geometry import pairwise_iou
-from lightgesture.features.types import Box, Float, Image
+from lightgesture.features.types import Float
+from lightgesture.training.pictures.boxed import BoxedPicture
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,18 +60,6 @@ MIDDLING_IOU: Final = 0.1
 """Overlap up to which a region is far from a hand."""
 KEPT_SHARE: Final = 0.4
 """Of the regions whose IoU is not above `MIDDLING_IOU`, the share that is trained on: they are many and alike."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class BoxedPicture:
-    """image: uint8 (h, w, 3), BGR. boxes: outlines of all hands in it, source pixels; may be empty. faces: boxes of
-    faces that are known. all_faces: those are all. sources: whose pictures went in."""
-
-    image: Image
-    boxes: tuple[Box, ...]
-    faces: tuple[Box, ...] = ()
-    all_faces: bool = False
-    sources: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,7 @@ from lightgesture.models import CLASSES
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_json, write_svm_model
 from lightgesture.training.nets.checkpoints import checkpoint_folder, peak_memory_mib
-from lightgesture.training.pool.patch_kinds import PoolSettings, read_originals
+from lightgesture.training.pool.originals import PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import make_pool
 from lightgesture.training.pool.pool_samples import pool_samples
 from lightgesture.training.pool.samples import read_rows, rows_digest
@@ -32,8 +32,10 @@ class SvmTraining:
     """Folders of pictures without hands."""
     scenes: Path | None = None
     """Table of whole pictures with boxes of hands and faces."""
+    divers: Path | None = None
+    """Table of pictures of real divers with their hands, see `pool.divers`."""
     without: tuple[str, ...] = ()
-    """Sources of `data` that are left out."""
+    """Sources of `data` and dives of `divers` that are left out."""
     seed: int = 0
     """Of everything drawn."""
     jobs: int = 1
@@ -54,7 +56,7 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
     started = time.monotonic()
     rows = [] if training.data is None else read_rows(training.data, training.without)
     classes = in_order(row.token for row in rows) or CLASSES
-    originals = read_originals(rows, training.backgrounds, training.scenes)
+    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     request = {
         "training": repr(replace(training, jobs=1)),
         "rows": rows_digest(rows),

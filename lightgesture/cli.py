@@ -24,6 +24,10 @@ COMMANDS = {
         "lightgesture.commands.signs",
         "the signs of the language or of a sentence, to read or to print",
     ),
+    "practice": (
+        "lightgesture.commands.practice",
+        "sentences to sign before a camera, and what was read of them",
+    ),
     "doctor": (
         "lightgesture.commands.doctor",
         "what runs on this machine, how fast, and what to do about what does not",

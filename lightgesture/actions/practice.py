@@ -2,9 +2,8 @@
 
 import json
 import os
-import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -16,16 +15,16 @@ from lightgesture.config.opening import make_folder, open_stream
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import print_line
 from lightgesture.errors import ExitStatus, InputError, UsageError
-from lightgesture.features.types import Image
 from lightgesture.fsm import Grammar
 from lightgesture.fsm.language.settings import SENTENCE
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import LiveLoop, Mailbox, Reader, Report
 from lightgesture.pipeline import Pipeline
+from lightgesture.practice.guide import Guide
 from lightgesture.practice.page import mirror_drawing
 from lightgesture.practice.session import Session
 from lightgesture.practice.study import TABLE, person_file, read_people, tabulate, tell_table, to_csv
-from lightgesture.practice.summary import summary, tell_summary, tell_task, view
+from lightgesture.practice.summary import summary, tell_summary, view
 from lightgesture.practice.tasks import Task, drawn_tasks, named_tasks, study_tasks
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
@@ -35,9 +34,6 @@ from lightgesture.web import WebListener
 
 GIVE_UP_S: Final = 10.0
 """Seconds without a picture after which a practice ends: somebody stands before the camera and waits."""
-
-GONE_S: Final = 5.0
-"""Seconds without a browser, after there was one, that are told."""
 
 END_S: Final = 3.0
 """Seconds for which the page stays after the last sentence, so that a browser gets the summary."""
@@ -55,64 +51,6 @@ class Plan:
     person: str | None = None
     level: str = "beginner"
     folder: str = "practice"
-
-
-class Practice:
-    """Listens to what is decoded: leads the session on, and shows it to browsers and in the terminal."""
-
-    def __init__(
-        self,
-        session: Session,
-        pipeline: Pipeline,
-        page: WebListener,
-        tell: Callable[[str], None],
-        report: Report,
-    ) -> None:
-        self._session, self._pipeline, self._page = session, pipeline, page
-        self._tell, self._report = tell, report
-        self.stopping: threading.Event | None = None
-        self._told = 0
-        self._seen_s: float | None = None
-        self._is_gone = False
-        self._announce()
-
-    def show(self, image_bgr: Image | None, records: Sequence[Record]) -> None:
-        """Take a decoded picture and its records."""
-        session = self._session
-        session.take(records)
-        if session.wants_fresh and records:
-            last = records[0]
-            self._pipeline.interrupt(
-                "the practice begins the sentence again", getattr(last, "time_s", None) or 0.0
-            )
-            session.freshened()
-        self._page.show(image_bgr, records)
-        self._page.tell("practice", view(session))
-        while self._told < session.number:
-            self._tell(f"  {tell_task(session.progress[self._told])}")
-            self._told += 1
-            self._announce()
-        self._watch_browser()
-        if session.is_done and self.stopping is not None:
-            self.stopping.set()
-
-    def _announce(self) -> None:
-        current = self._session.current
-        if current is not None:
-            signs = " ".join(",".join(sign.pair) for sign in current.task.sentence.signs)
-            place = f"{self._session.number + 1}/{len(self._session.progress)}"
-            self._tell(f"{place} sign {current.task.sentence.text}: {signs}")
-
-    def _watch_browser(self) -> None:
-        """Say once that the page was closed."""
-        now = time.monotonic()
-        if self._page.viewers:
-            self._seen_s, self._is_gone = now, False
-        elif self._seen_s is not None and not self._is_gone and now - self._seen_s > GONE_S:
-            self._is_gone = True
-            self._report(
-                f"the page was closed; the practice goes on here and at {self._page.address}practice; Ctrl-C ends it"
-            )
 
 
 def run_practice(source_name: str, settings: DecodeSettings, plan: Plan) -> ExitStatus:
@@ -143,8 +81,7 @@ def run_practice(source_name: str, settings: DecodeSettings, plan: Plan) -> Exit
         )
         if not settings.quiet:
             report(f"open {page.address}practice in a browser")
-        practice = Practice(session, pipeline, page, tell, report)
-        practice.stopping = stopping
+        practice = Guide(session, pipeline, page, tell, report, stopping)
         if isinstance(source, Source):
             status = _run_recording(source, pipeline, practice, stopping, report, settings.web is not None)
         else:
@@ -190,7 +127,7 @@ def _open(name: str, settings: DecodeSettings, is_recording: bool) -> Any:
 def _run_recording(
     source: Source,
     pipeline: Pipeline,
-    practice: Practice,
+    practice: Guide,
     stopping: Stopping,
     report: Report,
     is_paced: bool,
@@ -223,7 +160,7 @@ def _run_live(
     source: Any,
     settings: DecodeSettings,
     pipeline: Pipeline,
-    practice: Practice,
+    practice: Guide,
     stopping: Stopping,
     report: Report,
 ) -> ExitStatus:

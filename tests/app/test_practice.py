@@ -1,17 +1,19 @@
 """`practice`: what is asked for, what is noted of it, and what becomes of it at the end."""
 
 import json
+import threading
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lightgesture import cli
-from lightgesture.actions.practice import Plan, Practice, run_practice
+from lightgesture.actions.practice import Plan, run_practice
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.frames import Frame
 from lightgesture.fsm import Decoder, Signs, load_grammar
+from lightgesture.practice.guide import Guide
 from lightgesture.practice.page import mirror_drawing, mirrored
 from lightgesture.practice.picture import summary_page
 from lightgesture.practice.session import NOT_READ, Session
@@ -361,24 +363,27 @@ class FakePage:
 def test_a_browser_that_closes_is_told_once_and_the_practice_goes_on(monkeypatch):
     session = Session(named_tasks(GRAMMAR, ["STOP HOVER GO"]), GRAMMAR, 60.0, is_revised=False)
     page, messages, clock = FakePage(), [], [0.0]
-    monkeypatch.setattr("lightgesture.actions.practice.time.monotonic", lambda: clock[0])
-    practice = Practice(session, None, page, lambda _: None, messages.append)
+    monkeypatch.setattr("lightgesture.practice.guide.time.monotonic", lambda: clock[0])
+    guide = Guide(session, None, page, lambda _: None, messages.append, threading.Event())
     for viewers, now_s in ((0, 0.0), (0, 20.0), (1, 30.0), (0, 31.0), (0, 36.0), (0, 60.0)):
         page.viewers, clock[0] = viewers, now_s
-        practice.show(None, [])
+        guide.show(None, [])
     assert len(messages) == 1
     assert "the page was closed" in messages[0]
     assert page.told["practice"]["sentence"] == "STOP HOVER GO"
 
 
 def test_an_interruption_keeps_what_was_signed(tmp_path, monkeypatch, capsys):
-    from lightgesture.actions import practice as action
+    class Interrupting(Guide):
+        def __init__(self, *parts):
+            super().__init__(*parts)
+            self.stopping = parts[-1]
 
-    def show(self, image_bgr, records):
-        self.stopping.is_interrupted = True
-        self.stopping.set()
+        def show(self, image_bgr, records):
+            self.stopping.is_interrupted = True
+            self.stopping.set()
 
-    monkeypatch.setattr(action.Practice, "show", show)
+    monkeypatch.setattr("lightgesture.actions.practice.Guide", Interrupting)
     plan = Plan(sentences=("STOP HOVER GO",), folder=str(tmp_path))
     assert run_practice(SAMPLE, DecodeSettings(quiet=True), plan) == ExitStatus.INTERRUPTED
     assert len(list(tmp_path.glob("*.json"))) == 1

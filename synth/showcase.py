@@ -97,8 +97,8 @@ def write_sheet(picture: Picture, path: Path) -> None:
 SHOWN: dict[str, Callable[[Path], None]] = {
     "clip": write_clip,
     "hands": lambda path: write_sheet(hand_sheet(), path),
-    "decoded": lambda path: write_sheet(decoded_sheet(), path),
     "scenes": lambda path: write_sheet(scene_sheet(), path),
+    "decoded": lambda path: write_sheet(decoded_sheet(), path),
 }
 
 

@@ -90,7 +90,8 @@ def run_practice(source_name: str, settings: DecodeSettings, plan: Plan) -> Exit
             session, source.name, grammar.file, plan.person, plan.level if plan.is_study else None
         )
         page.tell("practice", {**view(session), "is_done": True, "summary": list(tell_summary(content))})
-        _close(content, settings, plan, tell)
+        is_whole = status == ExitStatus.OK and (session.is_done or not stopping.is_set())
+        _close(content, settings, plan, tell, is_whole)
         if page.viewers:
             time.sleep(END_S)
     return ExitStatus.INTERRUPTED if stopping.is_interrupted else status
@@ -177,26 +178,29 @@ def _run_live(
 
 
 def _close(
-    content: dict[str, Any], settings: DecodeSettings, plan: Plan, tell: Callable[[str], None]
+    content: dict[str, Any],
+    settings: DecodeSettings,
+    plan: Plan,
+    tell: Callable[[str], None],
+    is_whole: bool,
 ) -> None:
-    """Write the files and print the summary."""
-    if plan.is_study and plan.person is not None:
+    """Write the files and print the summary. is_whole: it was not broken off; else it is no result of the study."""
+    is_result = plan.is_study and plan.person is not None and is_whole
+    if is_result and plan.person is not None:
         path = person_file(plan.folder, plan.person)
     else:
         path = Path(plan.folder) / f"{datetime.now(UTC):%Y%m%dT%H%M%SZ}.json"
-    with replacing(path) as temporary:
-        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+    _write(path, json.dumps(content, indent=1) + "\n")
     from lightgesture.practice.picture import summary_page
     from lightgesture.signs.sheet import write_pages
 
     names = [str(path), *write_pages([summary_page(content)], str(path.with_suffix(".png")))]
     for line in tell_summary(content):
         tell(line)
-    if plan.is_study:
+    if is_result:
         rows = tabulate(read_people(plan.folder))
         table = Path(plan.folder) / TABLE
-        with replacing(table) as temporary:
-            temporary.write_text(to_csv(rows), encoding="utf-8")
+        _write(table, to_csv(rows))
         names.append(str(table))
         tell("Mean mistakes before success, all people so far:")
         for line in tell_table(rows):
@@ -204,3 +208,8 @@ def _close(
     tell(f"written: {', '.join(names)}")
     if settings.as_json:
         print_line(json.dumps(content))
+
+
+def _write(path: Path, text: str) -> None:
+    with replacing(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

@@ -23,7 +23,7 @@ _FONT: Final = cv2.FONT_HERSHEY_DUPLEX
 def to_png(page: Page) -> bytes:
     """The page as a PNG file."""
     picture = draw_page(page)
-    return bytes(cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 9])[1])
+    return bytes(cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 6])[1])
 
 
 def draw_page(page: Page, dots_per_mm: float = DOTS_PER_MM) -> Image:

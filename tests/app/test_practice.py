@@ -3,12 +3,15 @@
 import json
 import threading
 from dataclasses import replace
+from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from lightgesture import cli
 from lightgesture.actions.practice import Plan, run_practice
+from lightgesture.benchmarks.mjpeg_server import MjpegServer
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.frames import Frame
@@ -22,7 +25,7 @@ from lightgesture.practice.summary import summary, tell_summary, view
 from lightgesture.practice.tasks import STUDY, drawn_tasks, named_tasks, study_tasks
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.signs.sheet import Text
-from lightgesture.sources import Source
+from lightgesture.sources import Source, open_source
 from lightgesture.web import WebListener
 
 GRAMMAR = load_grammar()
@@ -384,9 +387,32 @@ def test_an_interruption_keeps_what_was_signed(tmp_path, monkeypatch, capsys):
             self.stopping.set()
 
     monkeypatch.setattr("lightgesture.actions.practice.Guide", Interrupting)
-    plan = Plan(sentences=("STOP HOVER GO",), folder=str(tmp_path))
-    assert run_practice(SAMPLE, DecodeSettings(quiet=True), plan) == ExitStatus.INTERRUPTED
-    assert len(list(tmp_path.glob("*.json"))) == 1
+    for plan in (
+        Plan(sentences=("STOP HOVER GO",), folder=str(tmp_path / "free")),
+        Plan(is_study=True, person="p1", folder=str(tmp_path / "study")),
+    ):
+        assert run_practice(SAMPLE, DecodeSettings(quiet=True), plan) == ExitStatus.INTERRUPTED
+        (path,) = Path(plan.folder).glob("*.json")
+        assert not path.name.startswith("person-")
+        assert not (Path(plan.folder) / "study.csv").exists()
+
+
+def test_a_stream_that_never_comes_is_given_up(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("lightgesture.actions.practice.GIVE_UP_S", 0.3)
+    status, out, err = run(capsys, "http://127.0.0.1:9/", "--sentence", "STOP HOVER GO", "--out", tmp_path)
+    assert status == 1
+    assert out[1] == "0 of 1 sentence signed, 0 mistakes, 0 slips"
+    assert err[-1].endswith("given up")
+
+
+@pytest.mark.slow
+def test_a_camera_of_the_network_is_practised_with(tmp_path, capsys):
+    with open_source(SAMPLE) as frames:
+        pictures = [cv2.imencode(".jpg", frame.image)[1].tobytes() for frame in frames]
+    with MjpegServer(pictures, 30.0) as camera:
+        status, out, _ = run(capsys, camera.address, "--sentence", "STOP HOVER 50 GO", "--out", tmp_path)
+    assert status == 0
+    assert "right after" in out[1]
 
 
 def test_the_page_gets_the_practice():

@@ -48,6 +48,8 @@ function showTask(practice) {
 
 function showHands(state, practice) {
   const asked = practice.signs ? practice.signs[practice.place].pair : [null, null];
+  // The last sign is held on for a moment; that is not wrong.
+  const before = practice.signs && practice.place ? practice.signs[practice.place - 1].pair : [null, null];
   for (const [place, side] of SIDES.entries()) {
     const hand = state.hands.find((one) => one.side === side);
     const read = hand === undefined ? "not in view" : hand.token ?? "not read";
@@ -55,7 +57,8 @@ function showHands(state, practice) {
     put(side + "-asked", asked[place] === null ? "" : "asked: " + asked[place]);
     const box = byId(side).parentElement;
     box.classList.toggle("right-sign", hand !== undefined && asked[place] !== null && hand.token === asked[place]);
-    box.classList.toggle("wrong-sign", hand !== undefined && asked[place] !== null && hand.token !== asked[place]);
+    const isWrong = hand !== undefined && asked[place] !== null && ![asked[place], before[place]].includes(hand.token);
+    box.classList.toggle("wrong-sign", isWrong);
   }
   const dwell = state.dwell;
   put("dwell-label", dwell ? dwell.pair.join(" and ") + ": " + (dwell.word ?? "no word") : "no sign is held");

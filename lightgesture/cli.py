@@ -20,6 +20,14 @@ COMMANDS = {
     "live": ("lightgesture.commands.live", "a camera or a stream to instructions, as they are signed"),
     "recognize": ("lightgesture.commands.recognize", "single pictures to hands and their tokens"),
     "calibrate": ("lightgesture.commands.calibrate", "some seconds of open hands to a colour profile"),
+    "signs": (
+        "lightgesture.commands.signs",
+        "the signs of the language or of a sentence, to read or to print",
+    ),
+    "practice": (
+        "lightgesture.commands.practice",
+        "sentences to sign before a camera, and what was read of them",
+    ),
     "doctor": (
         "lightgesture.commands.doctor",
         "what runs on this machine, how fast, and what to do about what does not",
@@ -51,6 +59,7 @@ EXTRAS = {
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
+    "fpdf": "print",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

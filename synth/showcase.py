@@ -1,6 +1,7 @@
-"""What the package shows of its generator: the bundled clip, and contact sheets of hands by token and of scenes.
+"""What the package shows of its generator: the bundled clip, sheets of hands by token and of scenes, and what the
+decoder sees in the clip.
 
-Run `python -m lightgesture.synth.showcase clip OUT.mp4`, or `hands` or `scenes` and OUT.jpg.
+Run `python -m lightgesture.synth.showcase clip OUT.mp4`, or `hands`, `scenes` or `decoded` and OUT.jpg.
 """
 
 from __future__ import annotations
@@ -13,7 +14,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.actions.decode import SAMPLE
+from lightgesture.pipeline import Pipeline
 from lightgesture.results.atomic import replacing
+from lightgesture.results.overlay import Overlay
+from lightgesture.sources import open_source
 from lightgesture.synth.crops import NONE, CropMaker, CropSettings
 from lightgesture.synth.output import video_writer
 from lightgesture.synth.poses import TOKENS
@@ -25,6 +30,8 @@ Picture = NDArray[np.uint8]
 TILE_PX, HANDS_A_ROW = 96, 12
 SCENE_SIZE, SCENES_A_ROW, SCENE_ROWS = (320, 240), 4, 4
 JPEG_QUALITY = 88
+HELD_SHARE = 0.4
+"""How far the hold of the digit has grown where it is shown."""
 SAMPLE_SPEC = SceneSpec(
     seed=4,
     sentences=("STOP HOVER 50 GO",),
@@ -66,6 +73,20 @@ def write_clip(path: Path) -> None:
             put(frame.image)
 
 
+def decoded_sheet() -> Picture:
+    """Two frames of the bundled clip as the decoder sees them, side by side: a digit held, and the instruction."""
+    overlay, shown = Overlay(), []
+    with open_source(SAMPLE) as frames, Pipeline(source=SAMPLE.name) as pipeline:
+        for frame in frames:
+            records = pipeline.process(frame.image, frame.time_s, frame.index)
+            picture = overlay.draw(frame.image, records)
+            dwell = overlay.state.dwell
+            is_digit = not shown and dwell is not None and dwell.word == "5" and dwell.progress >= HELD_SHARE
+            if is_digit or any(record.type == "instruction" for record in records):
+                shown.append(picture)
+    return np.asarray(np.hstack(shown), np.uint8)
+
+
 def write_sheet(picture: Picture, path: Path) -> None:
     """A contact sheet as JPEG."""
     _, coded = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
@@ -77,6 +98,7 @@ SHOWN: dict[str, Callable[[Path], None]] = {
     "clip": write_clip,
     "hands": lambda path: write_sheet(hand_sheet(), path),
     "scenes": lambda path: write_sheet(scene_sheet(), path),
+    "decoded": lambda path: write_sheet(decoded_sheet(), path),
 }
 
 

@@ -15,6 +15,7 @@ from lightgesture.errors import ExitStatus
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
+from lightgesture.pipeline import Pipeline
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink
@@ -45,12 +46,12 @@ def run_live(
     source = live_source(source_name, settings.source_options)
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
-    report = _make_report()
-    clock = _make_clock()
+    report = make_report()
+    clock = make_clock()
     mailbox = Mailbox()
-    pipeline = open_stream(_for_pipeline(settings), source.name, debug, report)
+    pipeline = open_stream(for_stream(settings), source.name, debug, report)
     with ExitStack() as stack:
-        listeners = [*listeners, *_serving(settings, stack, report)]
+        listeners = [*listeners, *_serving(settings, stack, report, pipeline)]
         stopping = stack.enter_context(stop_signals())
         outboxes = [Outbox(sink, report) for sink in sinks]
         reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
@@ -77,7 +78,7 @@ def run_live(
     return ExitStatus.SOME_FAILED if reader.has_given_up else _status(loop, outboxes, stopping)
 
 
-def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
+def for_stream(settings: DecodeSettings) -> DecodeSettings:
     """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
     a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
     changes: dict[str, object] = {"frames": True}
@@ -87,13 +88,15 @@ def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     return settings.model_copy(update=changes)
 
 
-def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list[Listener]:
+def _serving(
+    settings: DecodeSettings, stack: ExitStack, report: Report, pipeline: Pipeline
+) -> list[Listener]:
     """The page, where the user wants one, served until the stack ends."""
     if settings.web is None:
         return []
     from lightgesture.web import WebListener
 
-    page = stack.enter_context(WebListener(settings.web, settings.web_host))
+    page = stack.enter_context(WebListener(settings.web, settings.web_host, grammar=pipeline.decoder.grammar))
     if not settings.quiet:
         report(f"the page is at {page.address}")
     return [page]
@@ -113,13 +116,13 @@ def _make_printer(settings: DecodeSettings, name: str) -> Sink:
     return PrinterSink(TextPrinter(print_unbuffered, name))
 
 
-def _make_clock() -> Callable[[], float]:
+def make_clock() -> Callable[[], float]:
     """Seconds since now, to the microsecond."""
     start_s = time.monotonic()
     return lambda: round(time.monotonic() - start_s, 6)
 
 
-def _make_report() -> Report:
+def make_report() -> Report:
     """Messages on standard error, one at a time, whichever thread they are from."""
     lock = threading.Lock()
 

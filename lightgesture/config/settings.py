@@ -32,8 +32,9 @@ DECODE = "decode"
 RECOGNIZE = "recognize"
 LIVE = "live"
 CALIBRATE = "calibrate"
-DECODING = (DECODE, RECOGNIZE, LIVE)
-STREAMS = (DECODE, LIVE)
+PRACTICE = "practice"
+DECODING = (DECODE, RECOGNIZE, LIVE, PRACTICE)
+STREAMS = (DECODE, LIVE, PRACTICE)
 """The commands whose pictures follow each other in time."""
 
 BUILT_IN_MODELS = ("cnn", "svm")
@@ -135,7 +136,7 @@ class DecodeSettings(BaseModel):
     as_json: bool = _option(
         False, "records on standard output, one JSON object a line", alias="json", changes_results=False
     )
-    frames: bool = _option(False, "a record for every frame too", only=STREAMS)
+    frames: bool = _option(False, "a record for every frame too", only=(DECODE, LIVE))
     out: str | None = _option(
         None,
         "write DIR/<input stem>.jsonl, .csv and .vtt (subtitles) of each input; what is there and up to date stays",
@@ -183,7 +184,7 @@ class DecodeSettings(BaseModel):
     insecure: bool = _option(
         False,
         "take a camera's own certificate for https, which nobody vouches for",
-        only=(LIVE, CALIBRATE),
+        only=(LIVE, CALIBRATE, PRACTICE),
         changes_results=False,
     )
     give_up: float | None = _option(
@@ -230,7 +231,7 @@ class DecodeSettings(BaseModel):
         None,
         "serve a page with the annotated picture and the instructions",
         "PORT",
-        only=(LIVE,),
+        only=(LIVE, PRACTICE),
         ge=1,
         le=65535,
     )
@@ -238,7 +239,7 @@ class DecodeSettings(BaseModel):
         "127.0.0.1",
         "address that the page is served on; 0.0.0.0 lets the whole network look",
         "HOST",
-        only=(LIVE,),
+        only=(LIVE, PRACTICE),
         min_length=1,
     )
     debug_dir: str | None = _option(
@@ -246,6 +247,7 @@ class DecodeSettings(BaseModel):
         "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png",
         "DIR",
         kind="path",
+        only=(DECODE, RECOGNIZE, LIVE),
         min_length=1,
     )
     quiet: bool = _option(False, "no progress and no remarks on standard error", changes_results=False)

@@ -8,7 +8,7 @@ import threading
 import time
 import uuid
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, Final
@@ -57,10 +57,11 @@ class Update:
 class Board:
     """The shared state; every method may be called from any thread.
 
-    run: names this run, since numbers begin again in the next.
+    run: names this run, since numbers begin again in the next. expect: from the sentence so far and the decoder's state
+    to the words that may follow; None where nobody knows.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, expect: Callable[[str, str], list[str]] | None = None) -> None:
         self.run = uuid.uuid4().hex[:12]
         self._changed = threading.Condition()
         self._entries: deque[dict[str, Any]] = deque(maxlen=ENTRIES_KEPT)
@@ -70,7 +71,9 @@ class Board:
             "dwell": None,
             "hands": [],
             "ended": None,
+            "expected": [] if expect is None else expect("", "idle"),
         }
+        self._expect = expect
         self._entry_count = 0
         self._version = 0
         self._picture: Image | None = None
@@ -102,6 +105,13 @@ class Board:
                 self._undrawn.extend(records)
             for record in records:
                 self._note(record.to_dict())
+            self._version += 1
+            self._changed.notify_all()
+
+    def put(self, name: str, value: Any) -> None:
+        """Set something of the state that no record tells."""
+        with self._changed:
+            self._state = {**self._state, name: value}
             self._version += 1
             self._changed.notify_all()
 
@@ -171,6 +181,8 @@ class Board:
         if kind == "frame":
             self._state["hands"] = record["hands"]
         elif kind == "state":
+            if self._expect is not None and record["sentence"] != self._state["sentence"]:
+                self._state["expected"] = self._expect(record["sentence"], record["state"])
             self._state |= {name: record[name] for name in ("state", "sentence", "dwell")}
         elif kind == "heartbeat":
             self._state |= {name: record[name] for name in ("frames", "dropped", "ms_per_frame")}

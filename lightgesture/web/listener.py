@@ -4,15 +4,17 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Final, Self
+from typing import Any, Final, Self
 
 import cv2
 
 from lightgesture.errors import UsageError
 from lightgesture.features.types import Image
+from lightgesture.fsm import Grammar
 from lightgesture.records import Record
 from lightgesture.results.overlay import Overlay
 from lightgesture.web.board import Board
+from lightgesture.web.language import Language
 from lightgesture.web.server import WebServer
 
 LOOPBACK = "127.0.0.1"
@@ -37,13 +39,21 @@ class WebListener:
     """Serves the page; use it in a `with` block, or `start` and `stop` it.
 
     port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
-    draw: what makes the annotated picture. `show` never waits for a browser, and draws nothing itself.
+    draw: what makes the annotated picture. grammar: of the page of signs; None: there is none.
+    `show` never waits for a browser, and draws nothing itself.
     """
 
-    def __init__(self, port: int, host: str = LOOPBACK, draw: Draw | None = None) -> None:
+    def __init__(
+        self,
+        port: int,
+        host: str = LOOPBACK,
+        draw: Draw | None = None,
+        grammar: Grammar | None = None,
+    ) -> None:
         self._port, self._host = port, host
         self._draw = draw or Overlay().draw
-        self._board = Board()
+        self._language = None if grammar is None else Language(grammar)
+        self._board = Board(None if self._language is None else self._language.expected)
         self._server: WebServer | None = None
         self._threads: list[threading.Thread] = []
 
@@ -70,7 +80,8 @@ class WebListener:
     def start(self) -> None:
         """Begin to serve. UsageError: the address cannot be had."""
         try:
-            self._server = WebServer(self._host, self._port, self._board)
+            files = {} if self._language is None else self._language.files()
+            self._server = WebServer(self._host, self._port, self._board, files)
         except OSError as error:
             raise UsageError(
                 f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"
@@ -94,6 +105,10 @@ class WebListener:
     def show(self, image_bgr: Image | None, records: Sequence[Record]) -> None:
         """Take a picture, which must not be changed afterwards, and its records; None for records without one."""
         self._board.post(image_bgr, records)
+
+    def tell(self, name: str, value: Any) -> None:
+        """Show something that no record tells: its name and value, plain as JSON, in what browsers get."""
+        self._board.put(name, value)
 
     def _encode(self) -> None:
         """Draw and encode the newest picture, again and again, while somebody looks."""

@@ -9,7 +9,7 @@ import socket
 import socketserver
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -24,6 +24,13 @@ PAGES = {
     "/page.css": ("page.css", "text/css; charset=utf-8"),
     "/page.js": ("page.js", "text/javascript; charset=utf-8"),
     "/icon.svg": ("icon.svg", "image/svg+xml"),
+    "/signs": ("signs.html", "text/html; charset=utf-8"),
+    "/signs.css": ("signs.css", "text/css; charset=utf-8"),
+    "/signs.js": ("signs.js", "text/javascript; charset=utf-8"),
+    "/hands.js": ("hands.js", "text/javascript; charset=utf-8"),
+    "/practice": ("practice.html", "text/html; charset=utf-8"),
+    "/practice.css": ("practice.css", "text/css; charset=utf-8"),
+    "/practice.js": ("practice.js", "text/javascript; charset=utf-8"),
 }
 """Path to the file in `static` and its type."""
 
@@ -65,11 +72,16 @@ _BUSY = b"HTTP/1.0 503 Service Unavailable\r\nRetry-After: 5\r\nContent-Length: 
 
 
 class WebServer(ThreadingHTTPServer):
-    """Serves a board. Raises OSError where the port or the address cannot be had."""
+    """Serves a board. more: path to content and type of further files.
+
+    Raises OSError where the port or the address cannot be had.
+    """
 
     daemon_threads = True
 
-    def __init__(self, host: str, port: int, board: Board) -> None:
+    def __init__(
+        self, host: str, port: int, board: Board, more: Mapping[str, tuple[bytes, str]] | None = None
+    ) -> None:
         self.board = board
         self.names = known_names(host)
         self.viewers = threading.BoundedSemaphore(VIEWERS)
@@ -77,6 +89,7 @@ class WebServer(ThreadingHTTPServer):
         self._connections = threading.BoundedSemaphore(CONNECTIONS)
         folder = files("lightgesture.web") / "static"
         self.pages = {path: ((folder / name).read_bytes(), kind) for path, (name, kind) in PAGES.items()}
+        self.pages |= more or {}
         self.address_family = socket.AF_INET6 if ":" in host else socket.AF_INET
         super().__init__((host, port), _Handler)
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm import Decoder, Instruction, Notice, Rejected, State, Word, load_grammar
 from lightgesture.models import ModelError
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 
@@ -32,6 +32,10 @@ class FakePipeline:
     made: ClassVar = []
     interrupt_at = None
     unknown = False
+
+    @property
+    def decoder(self):
+        return Decoder(load_grammar())
 
     def __init__(self, *, model, source, frames, debug, **options):
         if model == "broken.npz":

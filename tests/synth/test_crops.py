@@ -86,5 +86,9 @@ def test_a_sheet_is_written_whole(tmp_path, monkeypatch):
 
 
 def test_a_showcase_names_what_it_has():
-    with pytest.raises(SystemExit, match="name one of clip, hands, scenes"):
+    with pytest.raises(SystemExit, match="name one of clip, hands, scenes, decoded"):
         showcase.main(["feet"])
+
+
+def test_the_bundled_clip_as_the_decoder_sees_it():
+    assert showcase.decoded_sheet().shape == (480, 2 * 640, 3)

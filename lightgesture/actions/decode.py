@@ -21,9 +21,6 @@ from lightgesture.results.ownership import ANNOTATED
 SAMPLE = Path(__file__).resolve().parents[1] / "data" / "sample.mp4"
 """The bundled clip, decoded where no input is named."""
 
-_BESIDE_RESULTS = ("annotate", "plot")
-"""Options whose files need a folder of results."""
-
 
 def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
     """Decode every input; none: the bundled clip.
@@ -66,8 +63,8 @@ def usable_cores() -> int:
 
 
 def _check(settings: DecodeSettings) -> None:
-    for option in _BESIDE_RESULTS:
-        if getattr(settings, option) and not settings.out:
+    for option, is_chosen in (("annotate", settings.is_annotated), ("plot", settings.plot)):
+        if is_chosen and not settings.out:
             raise UsageError(
                 f"--{option}: its file lies beside the other results; name a folder with --out DIR"
             )
@@ -98,7 +95,7 @@ def _keep_out_of_inputs(tasks: Sequence[Task], settings: DecodeSettings) -> None
 
 def _suffixes(settings: DecodeSettings) -> list[str]:
     """Of the files that each input gets."""
-    chosen = {ANNOTATED: settings.annotate, ".png": settings.plot}
+    chosen = {ANNOTATED: settings.is_annotated, ".png": settings.plot}
     return [*WRITERS, *(suffix for suffix, is_chosen in chosen.items() if is_chosen)]
 
 

@@ -29,7 +29,7 @@ def recognize(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
             try:
                 image = read_picture(name)
             except InputError as error:
-                progress.say(str(error))
+                progress.fail(str(error))
                 status = ExitStatus.SOME_FAILED
                 continue
             if debug is not None:

@@ -42,7 +42,7 @@ class WebListener:
 
     def __init__(self, port: int, host: str = LOOPBACK, draw: Draw | None = None) -> None:
         self._port, self._host = port, host
-        self._draw = draw or Overlay().draw
+        self._draw = draw or Overlay("below").draw
         self._board = Board()
         self._server: WebServer | None = None
         self._threads: list[threading.Thread] = []

@@ -1,5 +1,6 @@
 """Small videos, pictures and folders drawn on the spot, and a pipeline that needs no hands."""
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import cv2
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm import Instruction, Notice, Rejected, State, Word, load_grammar
 from lightgesture.models import ModelError
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
 
@@ -22,6 +23,19 @@ def draw(value, size=SIZE):
     return image
 
 
+class FakeFront:
+    """Sees nothing, whatever it is shown."""
+
+    def for_stream(self):
+        return self
+
+    def recognize(self, image):
+        assert image.dtype == np.uint8
+
+    def shown(self):
+        return {}
+
+
 class FakePipeline:
     """Says HOVER at the second frame, one instruction, notice and rejection at the third.
 
@@ -32,6 +46,8 @@ class FakePipeline:
     made: ClassVar = []
     interrupt_at = None
     unknown = False
+    front = FakeFront()
+    decoder = SimpleNamespace(grammar=load_grammar())
 
     def __init__(self, *, model, source, frames, debug, **options):
         if model == "broken.npz":

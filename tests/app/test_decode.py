@@ -70,6 +70,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "threshold": None,
         "grammar": "my.toml",
         "mirrored": True,
+        "rotate": 0,
     }
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
     run("decode", make_folder("frames", 2), "--hold-seconds", 0.4)
@@ -89,6 +90,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "threshold": None,
         "grammar": None,
         "mirrored": False,
+        "rotate": 0,
     }
 
 

@@ -74,4 +74,4 @@ def test_debug_folder_that_is_a_file(run, make_picture, tmp_path):
 def test_options_of_decode_are_refused(run, make_picture):
     result = run("recognize", make_picture("a.png"), "--hold", "3")
     assert result.status == ExitStatus.USAGE
-    assert result.err == ["lightgesture: unrecognized arguments: --hold 3; see lightgesture --help"]
+    assert result.err == ["lightgesture: unrecognized arguments: --hold; see lightgesture recognize --help"]

@@ -28,7 +28,7 @@ _MORE = "..."
 
 def letter_for(image: Image) -> int:
     """Height of a capital letter that suits a picture, pixels."""
-    return max(LEAST_LETTER, round(min(image.shape[:2]) * LETTER_SHARE))
+    return max(LEAST_LETTER, round(int(min(image.shape[:2])) * LETTER_SHARE))
 
 
 class Pen:

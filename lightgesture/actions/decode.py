@@ -6,11 +6,13 @@
 import importlib.util
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from lightgesture.archive.board import Board, table
-from lightgesture.archive.folder import open_archive_folder
+from lightgesture.archive.dives import refuse_foreign, write_dives
+from lightgesture.archive.folder import ArchiveFolder, open_archive_folder
 from lightgesture.archive.tasks import Done, Hear, Message, Outcome, Task, make_tasks
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import one_line, say, write_message
@@ -36,7 +38,8 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
         waiting = [task for task in tasks if known.get(task.place) is None]
         if folder is not None:
             folder.refuse_to_replace(waiting, _suffixes(settings))
-        with Board(tasks, settings.quiet) as board:
+            refuse_foreign(folder.path)
+        with _table_written(folder), Board(tasks, settings.quiet) as board:
 
             def hear(message: Message) -> None:
                 # Noted before it is told: what the user has seen is not done again.
@@ -52,6 +55,16 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
         _tell(tasks, board.outcomes)
     is_failed = any(outcome.status == "failed" for outcome in board.outcomes.values())
     return ExitStatus.SOME_FAILED if is_failed else ExitStatus.OK
+
+
+@contextmanager
+def _table_written(folder: ArchiveFolder | None) -> Iterator[None]:
+    """Write the table over all inputs of a folder after the block, also where it was interrupted."""
+    try:
+        yield
+    finally:
+        if folder is not None:
+            write_dives(folder.path)
 
 
 def usable_cores() -> int:

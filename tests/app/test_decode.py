@@ -16,8 +16,9 @@ def records(lines):
 
 
 def names(folder):
-    """The files of results, without the manifest and the lock."""
-    return sorted(path.name for path in folder.iterdir() if not path.name.startswith(".lightgesture"))
+    """The files of results of each input, without the manifest, the lock and the table over all."""
+    passed = (".lightgesture", "dives.csv")
+    return sorted(path.name for path in folder.iterdir() if not path.name.startswith(passed))
 
 
 def of(stem):

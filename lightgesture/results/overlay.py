@@ -15,7 +15,7 @@ from lightgesture.console import one_line
 from lightgesture.drawing import AMBER, DARK, GREEN, GREY, RED, WHITE, Colour, Pen, letter_for
 from lightgesture.features.geometry import turn_box
 from lightgesture.features.image import as_bgr8, turned
-from lightgesture.features.types import Image
+from lightgesture.features.types import Box, Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand, Record
@@ -122,7 +122,7 @@ def render(image_bgr: Image, state: OverlayState, place: Place = "over", rotate:
     picture = np.array(turned(original, rotate), copy=True)
     pen = Pen(picture)
     for hand in state.hands:
-        _draw_hand(pen, replace(hand, box=turn_box(hand.box, size, rotate)))
+        draw_hand(pen, hand, turn_box(hand.box, size, rotate))
     if place == "over":
         _draw_sentence(pen, state, pen.height - 2 * pen.row)
         if state.message is not None:
@@ -178,12 +178,13 @@ def _notice(state: OverlayState, detail: str) -> OverlayState:
     return replace(state, message=message)
 
 
-def _draw_hand(pen: Pen, hand: Hand) -> None:
+def draw_hand(pen: Pen, hand: Hand, box: Box) -> None:
+    """A hand with its token, or why it has none; box: where it lies in the pen's picture."""
     is_read = hand.token is not None
     colour = GREEN if is_read else AMBER
     what = f"{hand.token} {hand.confidence:.0%}" if is_read else unread(hand.reason, is_short=True)
-    pen.frame(hand.box, colour)
-    pen.label(f"{hand.side[0].upper()}: {what}", hand.box, colour)
+    pen.frame(box, colour)
+    pen.label(f"{hand.side[0].upper()}: {what}", box, colour)
 
 
 def _draw_sentence(pen: Pen, state: OverlayState, top: int) -> None:

@@ -22,6 +22,10 @@ COMMANDS = {
     "live": ("lightgesture.commands.live", "a camera or a stream to instructions, as they are signed"),
     "recognize": ("lightgesture.commands.recognize", "single pictures to hands and their tokens"),
     "calibrate": ("lightgesture.commands.calibrate", "some seconds of open hands to a colour profile"),
+    "signs": (
+        "lightgesture.commands.signs",
+        "the signs of the language or of a sentence, to read or to print",
+    ),
     "doctor": (
         "lightgesture.commands.doctor",
         "what runs on this machine, how fast, and what to do about what does not",
@@ -56,6 +60,7 @@ EXTRAS = {
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
+    "fpdf": "print",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

@@ -157,4 +157,9 @@ def _run(argv: list[str]) -> int:
         args = parse(make_parser([chosen]), argv)
     except SystemExit as leaving:  # --help and --version, printed
         return int(leaving.code or 0)
-    return int(args.run(args))
+    try:
+        return int(args.run(args))
+    except KeyboardInterrupt as error:
+        if error.args or args.command == "decode":
+            raise
+        raise KeyboardInterrupt("what was finished is kept") from None

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Final
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Grammar
+from lightgesture.grammar.arrows import Point
 from lightgesture.grammar.graph import (
     GAP,
     HAND,
     Graph,
     Placed,
-    Point,
     cell_width,
     lay_out,
     row_height,

@@ -20,7 +20,7 @@ DOCUMENTS = [
     ROOT / "lightgesture" / "data" / "export.md",
 ]
 ROOMS = ("lightgesture", "features", "models", "fsm", "synth", "training", "benchmarks")
-FOLDERS = "|".join((*ROOMS, "docs", "deploy", "tests"))
+FOLDERS = "|".join((*ROOMS, "docs", "deploy", "examples", "tests"))
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 PATH = re.compile(rf"(?<![\w./-])((?:{FOLDERS})/[\w./-]*\w/?)(?![\w/])")

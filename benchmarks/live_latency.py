@@ -23,7 +23,7 @@ from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.mjpeg_server import MjpegServer, read_jpegs
 from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table, to_text
-from lightgesture.console import native_messages_muted, print_line, say
+from lightgesture.console import messages_shown, native_messages_muted, print_line, say
 from lightgesture.errors import ExitStatus, InputError
 
 TITLE = "Live: from the frame to its record"
@@ -166,6 +166,7 @@ def table(run: Run, fps: float) -> Table:
     return Table("live_latency", TITLE, ("what", "value"), rows)
 
 
+@messages_shown()
 def main(argv: Sequence[str] | None = None) -> int:
     """Measure and print the table."""
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)

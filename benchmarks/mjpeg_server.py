@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from types import TracebackType
 from typing import Self
 
-from lightgesture.console import say
+from lightgesture.console import messages_shown, say
 from lightgesture.errors import ExitStatus, InputError
 
 _BOUNDARY = "frame"
@@ -95,6 +95,7 @@ def read_jpegs(path: str) -> list[bytes]:
         return [cv2.imencode(".jpg", frame.image)[1].tobytes() for frame in source]
 
 
+@messages_shown()
 def main(argv: Sequence[str] | None = None) -> int:
     """Serve until interrupted."""
     parser = argparse.ArgumentParser(description=__doc__, allow_abbrev=False)

@@ -56,3 +56,12 @@ def scale_boxes(boxes: NDArray[Any], scale: tuple[float, float], size: tuple[int
 def mirror_box(box: Box, width: int) -> Box:
     """The box in the picture flipped left to right; `width` of the picture in pixels."""
     return width - box[0] - box[2], box[1], box[2], box[3]
+
+
+def turn_box(box: Box, size: tuple[int, int], degrees: int) -> Box:
+    """The box in the picture turned clockwise by 0, 90, 180 or 270 degrees; `size`: its width and height before."""
+    (x, y, wide, tall), (width, height) = box, size
+    for _ in range(degrees // 90 % 4):
+        x, y, wide, tall = height - y - tall, x, tall, wide
+        width, height = height, width
+    return x, y, wide, tall

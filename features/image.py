@@ -30,6 +30,12 @@ def as_bgr8(image: NDArray[Any], bits: int = 16) -> Image:
     return np.asarray(eight, np.uint8)
 
 
+def turned(image: NDArray[Any], degrees: int) -> NDArray[Any]:
+    """The frame turned clockwise by 0, 90, 180 or 270 degrees; by 0 it is returned as it is, not copied."""
+    quarters = degrees // 90 % 4
+    return np.ascontiguousarray(np.rot90(image, -quarters)) if quarters else image
+
+
 class BitDepth:
     """The bits that the 16-bit frames of one source fill, decided once, so that its brightness never jumps.
 

@@ -6,14 +6,16 @@ that was asked for, so that `lightgesture --help` is quick and loads none of the
 
 import argparse
 import importlib
+import importlib.util
 import sys
-from collections.abc import Callable, Sequence
-from typing import NoReturn, Protocol, cast
+from collections.abc import Callable, Collection, Sequence
+from typing import Protocol, cast
 
 from lightgesture._version import __version__
-from lightgesture.console import ReaderGoneError, drop_output, say
+from lightgesture.console import ReaderGoneError, drop_output, fail, messages_shown, say
 from lightgesture.errors import ExitStatus, InputError, UsageError, defect_of
 from lightgesture.interruption import terminated_as_interrupted
+from lightgesture.parser import Parser, parse
 
 COMMANDS = {
     "decode": ("lightgesture.commands.decode", "videos, folders of frames and bags to instructions"),
@@ -40,6 +42,9 @@ COMMANDS = {
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
     "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
+    "config": ("lightgesture.commands.config", "write a configuration file with every option"),
+    "completion": ("lightgesture.commands.completion", "what a shell needs to complete commands and options"),
+    "manual": ("lightgesture.commands.manual", "the man page"),
 }
 """Name of a command to its module and its line of help.
 
@@ -72,14 +77,6 @@ class Command(Protocol):
     def run(self, args: argparse.Namespace) -> int: ...
 
 
-class Parser(argparse.ArgumentParser):
-    """Tells what is wrong in one line, without the usage."""
-
-    def error(self, message: str) -> NoReturn:
-        """Leave with the exit status of wrong usage."""
-        raise UsageError(f"{message}; see {self.prog} --help")
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status.
 
@@ -95,27 +92,28 @@ def exit_status(work: Callable[[], int], interrupted: str) -> int:
 
     interrupted: what becomes of the results when the user interrupts.
     """
-    try:
-        with terminated_as_interrupted():
-            return work()
-    except InputError as error:
-        say(str(error))
-        return ExitStatus.SOME_FAILED
-    except UsageError as error:
-        say(str(error))
-        return ExitStatus.USAGE
-    except ModuleNotFoundError as error:
-        say(_explain_missing(error))
-        return ExitStatus.USAGE
-    except KeyboardInterrupt:
-        say(f"interrupted; {interrupted}")
-        return ExitStatus.INTERRUPTED
-    except (ReaderGoneError, BrokenPipeError):
-        drop_output()
-        return ExitStatus.SOME_FAILED
-    except Exception as error:
-        say(defect_of(error))
-        return ExitStatus.SOME_FAILED
+    with messages_shown():
+        try:
+            with terminated_as_interrupted():
+                return work()
+        except InputError as error:
+            fail(str(error))
+            return ExitStatus.SOME_FAILED
+        except UsageError as error:
+            fail(str(error))
+            return ExitStatus.USAGE
+        except ModuleNotFoundError as error:
+            fail(_explain_missing(error))
+            return ExitStatus.USAGE
+        except KeyboardInterrupt as error:
+            say(f"interrupted; {' '.join(map(str, error.args)) or interrupted}")
+            return ExitStatus.INTERRUPTED
+        except (ReaderGoneError, BrokenPipeError):
+            drop_output()
+            return ExitStatus.SOME_FAILED
+        except Exception as error:
+            fail(defect_of(error))
+            return ExitStatus.SOME_FAILED
 
 
 def _explain_missing(error: ModuleNotFoundError) -> str:
@@ -127,24 +125,45 @@ def _explain_missing(error: ModuleNotFoundError) -> str:
     raise error
 
 
-def _run(argv: list[str]) -> int:
+def make_parser(chosen: Collection[str]) -> Parser:
+    """The parser of the command line, with the arguments of the commands that are `chosen`; the others are named."""
     parser = Parser(
         prog="lightgesture",
         description="Read a diver's two-handed signs in video and turn them into robot instructions.",
-        allow_abbrev=False,
     )
     parser.add_argument("--version", action="version", version=f"lightgesture {__version__}")
     choices = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
-    # The options before the command take no value, so the first word without a dash is the command.
-    chosen = next((word for word in argv if not word.startswith("-")), None)
     for name, (module, text) in COMMANDS.items():
-        child = choices.add_parser(name, help=text, description=f"{name}: {text}", allow_abbrev=False)
-        if name == chosen:
+        child = choices.add_parser(name, help=text, description=f"{name}: {text}")
+        if name in chosen:
             command = cast(Command, importlib.import_module(module))
             command.add_arguments(child)
             child.set_defaults(run=command.run)
+    return parser
+
+
+def present_commands() -> list[str]:
+    """Those whose modules are installed; a lean installation lacks later rooms."""
+    return [name for name, (module, _) in COMMANDS.items() if _is_present(module)]
+
+
+def _is_present(module: str) -> bool:
     try:
-        args = parser.parse_args(argv)
+        return importlib.util.find_spec(module) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+def _run(argv: list[str]) -> int:
+    # The options before the command take no value, so the first word without a dash is the command.
+    chosen = next((word for word in argv if not word.startswith("-")), "")
+    try:
+        args = parse(make_parser([chosen]), argv)
     except SystemExit as leaving:  # --help and --version, printed
         return int(leaving.code or 0)
-    return int(args.run(args))
+    try:
+        return int(args.run(args))
+    except KeyboardInterrupt as error:
+        if error.args or args.command == "decode":
+            raise
+        raise KeyboardInterrupt("what was finished is kept") from None

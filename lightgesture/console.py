@@ -1,15 +1,23 @@
-"""Standard output and standard error of the command line, and progress bars."""
+"""Standard output and standard error of the command line, and progress bars.
 
+Messages go through the standard library's `logging`, under the name `lightgesture`: the command line writes them to
+standard error, other programs get them wherever their own logging goes.
+"""
+
+import logging
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
-from typing import IO, Any, Self
+from typing import IO, Any, Final, Self
 
 from lightgesture.errors import UsageError
 
 MAX_LABEL = 30
 """Longest label of a progress bar, letters."""
+
+LOGGER: Final = logging.getLogger("lightgesture")
+"""Takes every message: errors at ERROR, what may be wrong and does not end the work at WARNING, the rest at INFO."""
 
 
 class ReaderGoneError(Exception):
@@ -25,9 +33,44 @@ def one_line(text: str) -> str:
     )
 
 
-def say(text: str) -> None:
-    """One message on standard error."""
-    write_message(one_line(f"lightgesture: {text}"))
+def say(text: str, level: int = logging.INFO) -> None:
+    """One message, to whoever hears `lightgesture` in the program's logging."""
+    LOGGER.log(level, "%s", one_line(text))
+
+
+def warn(text: str) -> None:
+    """A message of something that may have gone wrong, and did not end the work."""
+    say(text, logging.WARNING)
+
+
+def fail(text: str) -> None:
+    """A message of something that went wrong."""
+    say(text, logging.ERROR)
+
+
+class _ToStandardError(logging.Handler):
+    """Writes messages to whatever stands for standard error at the time."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """One line, or none where nobody can read it."""
+        with suppress(OSError, ValueError):
+            write_message(f"lightgesture: {record.getMessage()}")
+
+
+@contextmanager
+def messages_shown() -> Iterator[None]:
+    """Within this block messages from INFO up stand on standard error; within another one it does nothing."""
+    if any(isinstance(handler, _ToStandardError) for handler in LOGGER.handlers):
+        yield
+        return
+    handler, level = _ToStandardError(), LOGGER.level
+    LOGGER.addHandler(handler)
+    LOGGER.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        LOGGER.removeHandler(handler)
+        LOGGER.setLevel(level)
 
 
 def write_message(line: str) -> None:
@@ -154,10 +197,10 @@ class Progress:
         with self._bars.away():
             print_line(text)
 
-    def say(self, text: str) -> None:
-        """One message on standard error."""
+    def fail(self, text: str) -> None:
+        """A message of something that went wrong."""
         with self._bars.away():
-            say(text)
+            fail(text)
 
 
 @contextmanager

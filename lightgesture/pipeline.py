@@ -55,7 +55,7 @@ class Pipeline:
     The front end that they make reads hands. model: "cnn", "svm" or the path of a model file. selector: "learned"
     (locator and refiner) or "classical" (no net), see `features.find.selector`. profile: path of a colour profile of
     the diver's hands, which replaces the map of skin colours; None for that map. mirrored: frames come from a selfie
-    camera.
+    camera. rotate: degrees, 0, 90, 180 or 270, by which frames are turned clockwise to stand upright.
 
     threshold: least probability of a token, 0 to 1; None for the reader's own.
 
@@ -82,6 +82,7 @@ class Pipeline:
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
+        rotate: int = 0,
         threshold: float | None = None,
         rule: Rule | None = None,
         hold: int | None = None,
@@ -98,6 +99,7 @@ class Pipeline:
                 "selector": selector != "learned",
                 "profile": profile is not None,
                 "mirrored": mirrored,
+                "rotate": rotate != 0,
                 "threshold": threshold is not None,
             }
             _refuse("front end", of_hands)
@@ -128,6 +130,7 @@ class Pipeline:
                 colour=ColourStage(profile=None if profile is None else load_profile(profile)),
                 memory=partial(_memory, decoder.rule, decoder.hold_frames, decoder.hold_seconds),
                 mirrored=mirrored,
+                rotate=rotate,
             )
         self.front, self.decoder = front, decoder
         self._frames, self._one_thread = frames, OneBlasThread()

@@ -20,14 +20,14 @@ DOCUMENTS = [
     ROOT / "lightgesture" / "data" / "export.md",
 ]
 ROOMS = ("lightgesture", "features", "models", "fsm", "synth", "training", "benchmarks")
-FOLDERS = "|".join((*ROOMS, "docs", "deploy", "tests"))
+FOLDERS = "|".join((*ROOMS, "docs", "deploy", "examples", "tests"))
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 PATH = re.compile(rf"(?<![\w./-])((?:{FOLDERS})/[\w./-]*\w/?)(?![\w/])")
 PYTHON_FILE = re.compile(r"(?<![\w./-])([\w/]+\.py)\b")
 PROGRAM = re.compile(r"python3? -m (lightgesture[\w.]*\w)")
 NAME = re.compile(r"\b(lightgesture(?:\.\w+)+)(?!\.\w)\b")
-FILE_ENDINGS = (".toml", ".service", ".json", ".lock")
+FILE_ENDINGS = (".toml", ".service", ".json", ".lock", ".1")
 CODE = re.compile(r"^```.*?^```$|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 COMMAND = re.compile(r"(?:^|[`/ |])lightgesture (?!import\b)([a-z]\w*)([^`\n#|]*)", re.MULTILINE)
 PYTHON = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)

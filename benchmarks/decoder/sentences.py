@@ -19,7 +19,7 @@ from lightgesture.benchmarks.suite.scenarios import NEGATIVE, REAL, SUITES
 from lightgesture.benchmarks.suite.scoring import score_instructions
 from lightgesture.benchmarks.suite.takes import choose_takes, takes_of
 from lightgesture.benchmarks.tables import Cell, Table, to_text
-from lightgesture.console import print_line, say
+from lightgesture.console import messages_shown, print_line, say
 from lightgesture.fsm import Decoder, Grammar, Pair, Signs, load_grammar
 from lightgesture.fsm.language.settings import Rule
 from lightgesture.pipeline import Pipeline
@@ -230,6 +230,7 @@ def record_suite(
     return recorded
 
 
+@messages_shown()
 def main(argv: Sequence[str] | None = None) -> int:
     """The command line; returns the exit status."""
     parser = argparse.ArgumentParser(

@@ -9,7 +9,7 @@ from pathlib import Path
 from lightgesture.benchmarks.studies.data import training_of
 from lightgesture.benchmarks.tables import Table, to_text
 from lightgesture.config.parsers import positive, whole
-from lightgesture.console import ReaderGoneError, drop_output, print_line, say
+from lightgesture.console import ReaderGoneError, drop_output, messages_shown, print_line, say
 from lightgesture.errors import ExitStatus, InputError, UsageError
 from lightgesture.models import ModelError
 from lightgesture.training.datasets import find_data
@@ -67,6 +67,7 @@ def print_and_write(tables: Sequence[Table], out: str | None, settings: object) 
         write_json(Path(out), {"machine": describe_machine(), "settings": plain, "rows": rows})
 
 
+@messages_shown()
 def run_command(
     parser: argparse.ArgumentParser, argv: Sequence[str] | None, run: Callable[[argparse.Namespace], None]
 ) -> int:

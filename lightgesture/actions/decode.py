@@ -6,11 +6,13 @@
 import importlib.util
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from lightgesture.archive.board import Board, table
-from lightgesture.archive.folder import open_archive_folder
+from lightgesture.archive.dives import refuse_foreign, write_dives
+from lightgesture.archive.folder import ArchiveFolder, open_archive_folder
 from lightgesture.archive.tasks import Done, Hear, Message, Outcome, Task, make_tasks
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import one_line, say, write_message
@@ -20,9 +22,6 @@ from lightgesture.results.ownership import ANNOTATED
 
 SAMPLE = Path(__file__).resolve().parents[1] / "data" / "sample.mp4"
 """The bundled clip, decoded where no input is named."""
-
-_BESIDE_RESULTS = ("annotate", "plot")
-"""Options whose files need a folder of results."""
 
 
 def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
@@ -39,7 +38,8 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
         waiting = [task for task in tasks if known.get(task.place) is None]
         if folder is not None:
             folder.refuse_to_replace(waiting, _suffixes(settings))
-        with Board(tasks, settings.quiet) as board:
+            refuse_foreign(folder.path)
+        with _table_written(folder), Board(tasks, settings.quiet) as board:
 
             def hear(message: Message) -> None:
                 # Noted before it is told: what the user has seen is not done again.
@@ -57,6 +57,16 @@ def decode(inputs: Sequence[str], settings: DecodeSettings) -> ExitStatus:
     return ExitStatus.SOME_FAILED if is_failed else ExitStatus.OK
 
 
+@contextmanager
+def _table_written(folder: ArchiveFolder | None) -> Iterator[None]:
+    """Write the table over all inputs of a folder after the block, also where it was interrupted."""
+    try:
+        yield
+    finally:
+        if folder is not None:
+            write_dives(folder.path)
+
+
 def usable_cores() -> int:
     """Cores that this process may use."""
     try:
@@ -66,8 +76,8 @@ def usable_cores() -> int:
 
 
 def _check(settings: DecodeSettings) -> None:
-    for option in _BESIDE_RESULTS:
-        if getattr(settings, option) and not settings.out:
+    for option, is_chosen in (("annotate", settings.is_annotated), ("plot", settings.plot)):
+        if is_chosen and not settings.out:
             raise UsageError(
                 f"--{option}: its file lies beside the other results; name a folder with --out DIR"
             )
@@ -98,7 +108,7 @@ def _keep_out_of_inputs(tasks: Sequence[Task], settings: DecodeSettings) -> None
 
 def _suffixes(settings: DecodeSettings) -> list[str]:
     """Of the files that each input gets."""
-    chosen = {ANNOTATED: settings.annotate, ".png": settings.plot}
+    chosen = {ANNOTATED: settings.is_annotated, ".png": settings.plot}
     return [*WRITERS, *(suffix for suffix, is_chosen in chosen.items() if is_chosen)]
 
 

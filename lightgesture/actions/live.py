@@ -12,11 +12,13 @@ from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import print_unbuffered, say
 from lightgesture.errors import ExitStatus
+from lightgesture.hints import Hints
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.pipeline import Pipeline
 from lightgesture.results import JsonPrinter, TextPrinter
+from lightgesture.results.overlay import Overlay
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink
 from lightgesture.sources import live_source, refuse_missing_device
@@ -71,6 +73,7 @@ def run_live(
             debug=debug,
             heartbeat_s=heartbeat_s,
             start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
+            hints=None if settings.quiet else Hints(pipeline, settings.mirrored, settings.rotate),
         )
         loop.run(stopping)
     if not settings.quiet:
@@ -96,7 +99,10 @@ def _serving(
         return []
     from lightgesture.web import WebListener
 
-    page = stack.enter_context(WebListener(settings.web, settings.web_host, grammar=pipeline.decoder.grammar))
+    draw = Overlay("below", settings.rotate).draw
+    page = stack.enter_context(
+        WebListener(settings.web, settings.web_host, draw, grammar=pipeline.decoder.grammar)
+    )
     if not settings.quiet:
         report(f"the page is at {page.address}")
     return [page]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any, Self
 
 from lightgesture.archive.tasks import Advanced, Done, Message, Opened, Outcome, Printed, Remarked, Task
-from lightgesture.console import Bars, one_line, print_line, say
+from lightgesture.console import Bars, fail, one_line, print_line, warn
 
 
 class Board:
@@ -49,7 +49,7 @@ class Board:
                 self._lines[message.place] += message.lines
             case Remarked():
                 if not self._quiet and message.text not in self._remarks:
-                    say(message.text)
+                    warn(message.text)
                 self._remarks.add(message.text)
             case Done():
                 self.outcomes[message.place] = message.outcome
@@ -68,7 +68,7 @@ class Board:
                 return
             if outcome.message is not None:
                 with self._bars.away():
-                    say(outcome.message)
+                    fail(outcome.message)
             self._turn += 1
 
     def _estimate(self) -> None:

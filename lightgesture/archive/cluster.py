@@ -14,6 +14,7 @@ from typing import Any
 from lightgesture.archive.runner import Runner
 from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Task
 from lightgesture.config.settings import DecodeSettings, change_paths
+from lightgesture.console import messages_shown
 from lightgesture.errors import UsageError
 
 CONNECT_S = 10.0
@@ -66,7 +67,8 @@ def _decode(task: Task, settings: DecodeSettings, encoding: str) -> list[Message
         if not isinstance(message, Advanced):
             messages.append(message)
 
-    outcome = _kept.runner.run(task, hear)
+    with messages_shown():
+        outcome = _kept.runner.run(task, hear)
     return [*messages, Advanced(task.place, outcome.frames), Done(task.place, outcome)]
 
 

@@ -17,6 +17,7 @@ from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import ReaderGoneError
 from lightgesture.errors import InputError, UsageError, defect_of
 from lightgesture.frames import Frame
+from lightgesture.hints import Hints
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, Record, SummaryRecord
 from lightgesture.results import (
@@ -67,7 +68,7 @@ class Runner:
 
     def _open_pipeline(self, task: Task, debug: DebugPictures | None, hear: Hear) -> Pipeline:
         if self._pipeline is None:
-            needs_frames = self._settings.frames or self._settings.annotate or self._settings.plot
+            needs_frames = self._settings.frames or self._settings.is_annotated or self._settings.plot
             settings = self._settings.model_copy(update={"frames": needs_frames})
             self._pipeline = open_stream(settings, None, None, lambda text: hear(Remarked(task.place, text)))
         return self._pipeline.for_stream(task.name, debug)
@@ -93,6 +94,7 @@ class _Work:
         self._files: list[str] = []
         self._summary: SummaryRecord | None = None
         self._watch = Watch()
+        self._hints = None if settings.quiet else Hints(pipeline, settings.mirrored, settings.rotate)
 
     def run(self) -> Outcome:
         """InputError: no frame could be decoded."""
@@ -128,8 +130,11 @@ class _Work:
             self._writers.append(stack.enter_context(open_writer(self._path(suffix), self._task.name)))
         if self._settings.plot:
             self._frame_writers.append(stack.enter_context(open_plot(self._path(".png"), self._task.name)))
-        if self._settings.annotate:
-            self._video = stack.enter_context(open_annotated_video(self._path(ANNOTATED), self._task.files))
+        if self._settings.annotate != "no":
+            video = open_annotated_video(
+                self._path(ANNOTATED), self._task.files, self._settings.annotate, self._settings.rotate
+            )
+            self._video = stack.enter_context(video)
 
     def _path(self, suffix: str) -> Path:
         name = f"{self._task.stem}{suffix}"
@@ -152,6 +157,8 @@ class _Work:
             text = "most frames show nothing, all pixels being the same; look at the camera, or convert the input"
             failure = InputError(f"{source.name}: {text}")
         self._write(_finish(self._pipeline, is_failed=failure is not None))
+        for text in self._hints.texts() if self._hints is not None else ():
+            self._hear(Remarked(self._task.place, f"{self._task.name}: {text}"))
         return failure
 
     def _process_frame(self, frame: Frame) -> None:
@@ -165,6 +172,8 @@ class _Work:
         if self._video is not None:
             self._video.write(frame.image, frame.time_s, records)
         self._write(records)
+        if self._hints is not None:
+            self._hints.look(frame.image, frame.time_s, records)
         self._hear(Advanced(self._task.place, 1))
 
     def _write(self, records: Iterable[Record]) -> None:

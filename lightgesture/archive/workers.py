@@ -20,6 +20,7 @@ from multiprocessing.context import SpawnContext
 from lightgesture.archive.runner import Runner
 from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Printed, Task
 from lightgesture.config.settings import DecodeSettings
+from lightgesture.console import messages_shown
 from lightgesture.errors import UsageError
 from lightgesture.interruption import terminated_as_interrupted
 
@@ -157,7 +158,7 @@ def _serve(connection: Connection, settings: DecodeSettings, encoding: str) -> N
     cv2.setNumThreads(1)
     runner, reporter = Runner(settings, encoding), _Reporter(connection)
     try:
-        with terminated_as_interrupted():
+        with terminated_as_interrupted(), messages_shown():
             threading.Thread(target=_die_with_parent, daemon=True).start()
             while True:
                 task = connection.recv()

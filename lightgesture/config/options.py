@@ -16,26 +16,29 @@ from pydantic_core import ErrorDetails
 from lightgesture.config.settings import DECODING, DecodeSettings, change_paths
 from lightgesture.errors import UsageError
 from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
+from lightgesture.parser import MayStandAlone
 
 _HOLDS = ("hold", "hold_seconds")
 
 
-def add_options(parser: argparse.ArgumentParser, command: str) -> None:
-    """Declare the options of `command`, and `--config` if it decodes; what is not given stays out of the result."""
+def add_options(parser: argparse.ArgumentParser, *commands: str) -> None:
+    """Declare the options of `commands`, and `--config` if one decodes; what is not given stays out of the result."""
     for name, field in DecodeSettings.model_fields.items():
         extra: Any = field.json_schema_extra
-        if command not in extra["only"]:
+        if not set(commands) & set(extra["only"]):
             continue
         key = field.alias or name
         kind: dict[str, Any] = {"metavar": extra["metavar"]}
         if field.annotation is bool:
             kind = {"action": argparse.BooleanOptionalAction}
+        elif extra["may_stand_alone"]:
+            kind |= {"action": MayStandAlone, "words": extra["metavar"].split("|")}
         elif field.annotation == list[str]:
             kind["action"] = "append"
         parser.add_argument(
             _flag(key), dest=key, default=argparse.SUPPRESS, help=_help(field, extra["metavar"]), **kind
         )
-    if command in DECODING:
+    if set(commands) & set(DECODING):
         text = "TOML file with any of these options; the command line goes first"
         parser.add_argument("--config", metavar="FILE", help=text)
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from lightgesture.config import DEFAULT_FPS
 
@@ -24,6 +24,9 @@ MIN_CAUTION, MAX_CAUTION = 0.1, 3.0
 
 MAX_GIVE_UP_S = 86_400.0
 """Longest wait for a picture after which `live` gives up, seconds: a day."""
+
+QUARTER = 90
+"""Degrees by whole numbers of which a picture is turned."""
 
 MAX_FPS = 1000.0
 """Highest rate of a folder of frames, frames a second."""
@@ -48,15 +51,23 @@ def _option(
     *,
     only: tuple[str, ...] = DECODING,
     kind: Literal["path", ""] = "",
+    may_stand_alone: bool = False,
     changes_results: bool = True,
     **checks: Any,
 ) -> Any:
     """A field that is an option too.
 
-    only: the commands that have it. kind: "path" of a file or a folder. changes_results: whether what `decode` writes
-    into its folder of results depends on it.
+    only: the commands that have it. kind: "path" of a file or a folder. may_stand_alone: on the command line it is the
+    first word of `metavar` where none follows. changes_results: whether what `decode` writes into its folder of results
+    depends on it.
     """
-    extra: Any = {"metavar": metavar, "only": only, "kind": kind, "changes_results": changes_results}
+    extra: Any = {
+        "metavar": metavar,
+        "only": only,
+        "kind": kind,
+        "may_stand_alone": may_stand_alone,
+        "changes_results": changes_results,
+    }
     return Field(default=default, description=text, json_schema_extra=extra, **checks)
 
 
@@ -78,9 +89,7 @@ class DecodeSettings(BaseModel):
         kind="path",
         min_length=1,
     )
-    grammar: str | None = _option(
-        None, "grammar file (default: the bundled one)", "FILE", kind="path", only=STREAMS
-    )
+    grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", kind="path")
     hold: int | None = _option(
         None,
         "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
@@ -124,6 +133,15 @@ class DecodeSettings(BaseModel):
         allow_inf_nan=False,
     )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
+    rotate: int = _option(
+        0,
+        "degrees, clockwise, by which the picture is turned to stand upright; boxes are told as it came",
+        "90|180|270",
+        only=(*DECODING, CALIBRATE),
+        ge=0,
+        lt=360,
+        multiple_of=QUARTER,
+    )
     fps: float = _option(
         DEFAULT_FPS,
         f"frames a second of what has no clock: folders, bare streams of H.264 or JPEG (default: {DEFAULT_FPS:g})",
@@ -139,17 +157,21 @@ class DecodeSettings(BaseModel):
     frames: bool = _option(False, "a record for every frame too", only=(DECODE, LIVE))
     out: str | None = _option(
         None,
-        "write DIR/<input stem>.jsonl, .csv and .vtt (subtitles) of each input; what is there and up to date stays",
+        "write DIR/<input stem>.jsonl of each input; of videos also .csv and .vtt (subtitles), and dives.csv of all;"
+        " what is there of a video and up to date stays",
         "DIR",
         kind="path",
-        only=(DECODE,),
+        only=(DECODE, RECOGNIZE),
         changes_results=False,
         min_length=1,
     )
-    annotate: bool = _option(
-        False,
-        "write DIR/<input stem>_annotated.mp4 too, with hands, sentence and outcome drawn in",
-        only=(DECODE,),
+    annotate: Literal["below", "beside", "over", "no"] = _option(
+        "no",
+        "write DIR/<input stem>_annotated.mp4 (of pictures .png) too: hands drawn in, sentence and outcome in a bar"
+        " below the picture, beside it, or over it (default: no; alone: below)",
+        "below|beside|over|no",
+        only=(DECODE, RECOGNIZE),
+        may_stand_alone=True,
     )
     plot: bool = _option(
         False, "write DIR/<input stem>.png too, a picture of signs and instructions over time", only=(DECODE,)
@@ -251,6 +273,17 @@ class DecodeSettings(BaseModel):
         min_length=1,
     )
     quiet: bool = _option(False, "no progress and no remarks on standard error", changes_results=False)
+
+    @field_validator("annotate", mode="before")
+    @classmethod
+    def _named(cls, value: Any) -> Any:
+        """A file may say true or false, for the first of the places and for none."""
+        return {True: "below", False: "no"}.get(value, value) if isinstance(value, bool) else value
+
+    @property
+    def is_annotated(self) -> bool:
+        """Whether pictures with everything drawn in are wanted."""
+        return self.annotate != "no"
 
     @property
     def source_options(self) -> "SourceOptions":

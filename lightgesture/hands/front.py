@@ -9,8 +9,8 @@ import numpy as np
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.selector import choose, load_selector
 from lightgesture.features.find.settings import SelectorSettings
-from lightgesture.features.geometry import mirror_box
-from lightgesture.features.image import as_bgr8
+from lightgesture.features.geometry import mirror_box, turn_box
+from lightgesture.features.image import as_bgr8, turned
 from lightgesture.features.track.state import Track
 from lightgesture.features.track.tracker import Tracker
 from lightgesture.features.types import Box, Candidates, Image
@@ -81,8 +81,9 @@ class HandReader(FrontEnd):
 
     Each stage may be another: read: names the token of each hand, the one stage that needs a model. find: colour map ->
     candidates, by default the learned choice. colour: frame -> colour map. track, memory: make what remembers the hands
-    of one stream, where they are and what they showed. mirrored: the picture is a selfie camera's; boxes are told in
-    its own pixels.
+    of one stream, where they are and what they showed. rotate: degrees, 0, 90, 180 or 270, by which the picture is
+    turned clockwise to stand upright; mirrored: it is a selfie camera's. Boxes are told in the pixels of the picture as
+    it came.
     """
 
     def __init__(
@@ -94,6 +95,7 @@ class HandReader(FrontEnd):
         track: Callable[[], Follower] | None = None,
         memory: Callable[[], ReadingMemory] = ReadingMemory,
         mirrored: bool = False,
+        rotate: int = 0,
     ) -> None:
         super().__init__()
         self._read = read
@@ -102,7 +104,9 @@ class HandReader(FrontEnd):
         self._colour = colour or ColourStage()
         self._make_track: Callable[[], Follower] = track or (lambda: Tracker(selection=self._find.settings))
         self._make_memory = memory
-        self._mirrored = mirrored
+        if rotate not in (0, 90, 180, 270):
+            raise ValueError(f"rotate is {rotate}; it must be 0, 90, 180 or 270")
+        self._mirrored, self._rotate = mirrored, rotate
         self._begin()
 
     def _begin(self) -> None:
@@ -147,10 +151,9 @@ class HandReader(FrontEnd):
 
     def shown(self) -> dict[str, tuple[Any, ...]]:
         """The hands of the last frame, boxes in its own pixels."""
-        if not self._mirrored or self._upright is None:
+        if self._upright is None or not (self._mirrored or self._rotate):
             return {"hands": self._hands}
-        width = self._upright.shape[1]
-        return {"hands": tuple(replace(hand, box=mirror_box(hand.box, width)) for hand in self._hands)}
+        return {"hands": tuple(replace(hand, box=self._as_it_came(hand.box)) for hand in self._hands)}
 
     def pictures(self) -> Iterator[tuple[str, Image]]:
         """See FrontEnd; of a picture on its own there are no tracks."""
@@ -164,10 +167,17 @@ class HandReader(FrontEnd):
 
     def _look(self, image: Image) -> tuple[Image, ColourMap]:
         # A thermal camera's grey frames must reach the classifier in colours as well.
-        picture = as_bgr8(image)
+        picture = turned(as_bgr8(image), self._rotate)
         self._upright = np.ascontiguousarray(picture[:, ::-1]) if self._mirrored else picture
         self._map = self._colour.process(self._upright)
         return self._upright, self._map
+
+    def _as_it_came(self, box: Box) -> Box:
+        """A box of the upright picture in the picture as it came."""
+        assert self._upright is not None
+        height, width = self._upright.shape[:2]
+        box = mirror_box(box, width) if self._mirrored else box
+        return turn_box(box, (width, height), -self._rotate)
 
     def _search(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
         """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds

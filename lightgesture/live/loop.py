@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from lightgesture.errors import InputError
 from lightgesture.fsm import State
+from lightgesture.hints import Hints
 from lightgesture.live.reader import Mailbox, Report, Snapshot
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, HeartbeatRecord, Record, SummaryRecord, utc_text
@@ -61,7 +62,8 @@ class LiveLoop:
 
     source: the name in the heartbeats. pipeline: must give frame records, which listeners need. frames: whether they
     go to the outlets too. clock: seconds since the start, the same as that of the reader. report: takes messages.
-    heartbeat_s: seconds from one heartbeat record to the next. start_utc: the moment at which `clock` was 0.
+    heartbeat_s: seconds from one heartbeat record to the next. start_utc: the moment at which `clock` was 0. hints:
+    are reported as soon as there are any.
     """
 
     def __init__(
@@ -78,9 +80,10 @@ class LiveLoop:
         debug: DebugPictures | None = None,
         heartbeat_s: float = HEARTBEAT_S,
         start_utc: datetime | None = None,
+        hints: Hints | None = None,
     ) -> None:
         self._source, self._mailbox, self._pipeline, self._outlets = source, mailbox, pipeline, outlets
-        self._clock, self._report, self._listeners = clock, report, listeners
+        self._clock, self._report, self._listeners, self._hints = clock, report, listeners, hints
         self._frames, self._debug, self._heartbeat_s = frames, debug, heartbeat_s
         self._processed = self._unreadable = 0
         self._watch = Watch()
@@ -146,6 +149,10 @@ class LiveLoop:
         self._processed += 1
         self._seen_s, self._is_silent = snapshot.time_s, False
         self._publish(image, records)
+        if self._hints is not None:
+            self._hints.look(image, snapshot.time_s, records)
+            for text in self._hints.texts():
+                self._report(f"{self._source}: {text}")
 
     def beat(self, now_s: float) -> None:
         """Publish a sign of life, at `now_s` seconds."""

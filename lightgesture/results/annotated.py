@@ -17,7 +17,7 @@ import numpy as np
 from lightgesture.features.types import Image
 from lightgesture.records import Record
 from lightgesture.results.atomic import replacing
-from lightgesture.results.overlay import Overlay
+from lightgesture.results.overlay import Overlay, Place
 from lightgesture.results.ownership import MARK
 from lightgesture.results.sound import SoundTrack
 
@@ -42,11 +42,11 @@ NOMINAL_RATE: Final = 30
 
 
 class AnnotatedVideo:
-    """Takes frame after frame with its records."""
+    """Takes frame after frame with its records; overlay: draws on them."""
 
-    def __init__(self, container: "OutputContainer", sound: SoundTrack) -> None:
+    def __init__(self, container: "OutputContainer", sound: SoundTrack, overlay: Overlay) -> None:
         self._container, self._sound = container, sound
-        self._overlay = Overlay()
+        self._overlay = overlay
         self._stream: VideoStream | None = None
         self._size = (0, 0)
         self._tick = -1
@@ -87,10 +87,13 @@ class AnnotatedVideo:
 
 
 @contextmanager
-def open_annotated_video(path: Path, originals: Sequence[str] = ()) -> Iterator[AnnotatedVideo]:
+def open_annotated_video(
+    path: Path, originals: Sequence[str] = (), place: Place = "over", rotate: int = 0
+) -> Iterator[AnnotatedVideo]:
     """Write an `.mp4` file that appears under its name when the block ends well.
 
-    originals: paths of the video, or of its chapters, whose sound and metadata it gets, where it has any.
+    originals: paths of the video, or of its chapters, whose sound and metadata it gets, where it has any. place,
+    rotate: as of `Overlay`.
     """
     import av
 
@@ -100,7 +103,7 @@ def open_annotated_video(path: Path, originals: Sequence[str] = ()) -> Iterator[
         sound = SoundTrack(originals)
         container.metadata.update(_marked(sound.metadata))
         try:
-            video = AnnotatedVideo(container, sound)
+            video = AnnotatedVideo(container, sound, Overlay(place, rotate))
             yield video
             video.finish()
         finally:

@@ -6,31 +6,23 @@ The state of the picture is a frozen value, `advance` leads it over the records 
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Literal
 
 import cv2
 import numpy as np
 
 from lightgesture.console import one_line
-from lightgesture.features.image import as_bgr8
-from lightgesture.features.types import Image
+from lightgesture.drawing import AMBER, DARK, GREEN, GREY, RED, WHITE, Colour, Pen, letter_for
+from lightgesture.features.geometry import turn_box
+from lightgesture.features.image import as_bgr8, turned
+from lightgesture.features.types import Box, Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand, Record
+from lightgesture.results.words import rejected, unread
 
-_Colour = tuple[int, int, int]
-
-_GREEN, _AMBER, _RED = (80, 200, 60), (0, 190, 255), (120, 120, 255)
-_WHITE, _GREY, _DARK = (255, 255, 255), (190, 190, 190), (28, 24, 20)
-
-_FONT = cv2.FONT_HERSHEY_SIMPLEX
-_MORE = "..."
-
-LETTER_SHARE: Final = 0.032
-"""Height of a capital letter as a share of the picture's shorter side; larger hides more."""
-
-LEAST_LETTER: Final = 9
-"""Smallest height of a capital letter, pixels; below 8 it cannot be read."""
+Place = Literal["below", "beside", "over"]
+"""Where sentence and outcome stand: in a bar under the picture, in one to its right, or on the picture."""
 
 MESSAGE_S: Final = 4.0
 """How long an accepted or rejected instruction stays in view, seconds of the video. 3 to 6 suits readers."""
@@ -38,8 +30,14 @@ MESSAGE_S: Final = 4.0
 NOTICE_S: Final = 2.0
 """Likewise for a notice, which never covers an instruction."""
 
-PANEL_OPACITY: Final = 0.7
-"""How much of the picture the panels hide, 0 (nothing) to 1."""
+ROWS_BELOW: Final = 4
+"""Of the bar under the picture: sentence, hold, outcome, its reason."""
+
+BESIDE_LETTERS: Final = 18
+"""Width of the bar beside the picture, heights of a capital letter; about as many letters."""
+
+LOGGED: Final = 12
+"""Outcomes that the bar beside the picture may show, the newest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +46,7 @@ class Message:
 
     text: str
     detail: str
-    colour: _Colour
+    colour: Colour
     until_s: float
     is_notice: bool
 
@@ -58,7 +56,7 @@ class OverlayState:
     """All that an overlay shows.
 
     hands: of the latest frame record. sentence: the words so far, empty while idle. dwell: the hold that grows.
-    message: None where none is in view. time_s: of the latest record, seconds.
+    message: None where none is in view. time_s: of the latest record, seconds. log: the last outcomes, newest first.
     """
 
     hands: tuple[Hand, ...] = ()
@@ -66,24 +64,28 @@ class OverlayState:
     dwell: Growth | None = None
     message: Message | None = None
     time_s: float = 0.0
+    log: tuple[Message, ...] = ()
 
 
 class Overlay:
     """Draws on frame after frame of one stream.
 
-    For boxes and tokens the records of a frame must hold its frame record (`Pipeline(frames=True)`).
+    For boxes and tokens the records of a frame must hold its frame record (`Pipeline(frames=True)`). place: of
+    sentence and outcome. rotate: degrees by which the picture is turned clockwise to stand upright, as of `Pipeline`.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, place: Place = "over", rotate: int = 0) -> None:
+        self._place, self._rotate = place, rotate
         self.state = OverlayState()
 
     def draw(self, image_bgr: Image, records: Iterable[Record]) -> Image:
         """The frame, any size from 1 × 1, with all that is known after its records; the given picture stays as it is.
 
-        image_bgr: uint8 (height, width, 3), BGR, or what `as_bgr8` makes of it. Gives uint8 (height, width, 3).
+        image_bgr: uint8 (height, width, 3), BGR, or what `as_bgr8` makes of it. Gives uint8 (height, width, 3), larger
+        by the bar where that stands below or beside.
         """
         self.state = advance(self.state, records)
-        return render(image_bgr, self.state)
+        return render(image_bgr, self.state, self._place, self._rotate)
 
 
 def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
@@ -99,9 +101,9 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
                 state = replace(state, sentence=record.sentence, dwell=record.dwell)
             case Instruction():
                 accepted = f"{record.text}  {record.confidence:.0%}"
-                state = _say(state, "accepted: " + accepted, "", _GREEN)
+                state = _say(state, "accepted: " + accepted, "", GREEN)
             case Rejected():
-                state = _say(state, "rejected: " + record.text, record.detail, _RED)
+                state = _say(state, "rejected: " + record.text, record.detail or rejected(record.reason), RED)
             case Notice():
                 state = _notice(state, record.detail)
             case _:
@@ -113,124 +115,111 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
     return state
 
 
-def render(image_bgr: Image, state: OverlayState) -> Image:
-    """A copy of the frame with the state drawn on it."""
-    picture = np.array(as_bgr8(image_bgr), copy=True)
-    letter = max(LEAST_LETTER, round(min(picture.shape[:2]) * LETTER_SHARE))
-    pen = _Pen(picture, letter)
+def render(image_bgr: Image, state: OverlayState, place: Place = "over", rotate: int = 0) -> Image:
+    """A copy of the frame, turned upright, with the state drawn on it and beside it."""
+    original = as_bgr8(image_bgr)
+    size = original.shape[1], original.shape[0]
+    picture = np.array(turned(original, rotate), copy=True)
+    pen = Pen(picture)
     for hand in state.hands:
-        _draw_hand(pen, hand)
-    _draw_sentence(pen, state)
+        draw_hand(pen, hand, turn_box(hand.box, size, rotate))
+    if place == "over":
+        _draw_sentence(pen, state, pen.height - 2 * pen.row)
+        if state.message is not None:
+            pen.panel(0, 0, pen.width, (2 if state.message.detail else 1) * pen.row)
+            _draw_message(pen, state.message, 0)
+        return picture
+    return _with_bar_below(picture, state) if place == "below" else _with_bar_beside(picture, state)
+
+
+def _with_bar_below(picture: Image, state: OverlayState) -> Image:
+    letter = letter_for(picture)
+    bar = Pen(_ground(ROWS_BELOW * Pen(picture, letter).row, picture.shape[1]), letter)
+    _draw_sentence(bar, state, 0)
     if state.message is not None:
-        _draw_message(pen, state.message)
-    return picture
+        _draw_message(bar, state.message, 2 * bar.row)
+    return np.vstack([picture, bar.picture])
 
 
-def _say(state: OverlayState, text: str, detail: str, colour: _Colour) -> OverlayState:
+def _with_bar_beside(picture: Image, state: OverlayState) -> Image:
+    letter = letter_for(picture)
+    bar = Pen(_ground(picture.shape[0], BESIDE_LETTERS * letter), letter)
+    room = bar.width - 2 * bar.margin
+    bar.write(f"{state.time_s:.1f} s", bar.margin, 0, GREY)
+    top = bar.row
+    for line in bar.wrap(one_line(state.sentence) or "idle", room, 4):
+        bar.write(line, bar.margin, top, WHITE if state.sentence else GREY)
+        top += bar.row
+    _draw_dwell(bar, state.dwell, top)
+    top += 2 * bar.row
+    for message in state.log:
+        for text, colour in ((message.text, message.colour), (message.detail, WHITE)):
+            for line in bar.wrap(text, room, 3):
+                bar.write(line, bar.margin, top, colour)
+                top += bar.row
+        top += bar.margin
+    return np.hstack([picture, bar.picture])
+
+
+def _ground(height: int, width: int) -> Image:
+    return np.full((height, width, 3), DARK, np.uint8)
+
+
+def _say(state: OverlayState, text: str, detail: str, colour: Colour) -> OverlayState:
     message = Message(one_line(text), one_line(detail), colour, state.time_s + MESSAGE_S, is_notice=False)
-    return replace(state, message=message)
+    return replace(state, message=message, log=(message, *state.log)[:LOGGED])
 
 
 def _notice(state: OverlayState, detail: str) -> OverlayState:
     shown = state.message
     if shown is not None and not shown.is_notice and state.time_s < shown.until_s:
         return state
-    message = Message(one_line(detail), "", _AMBER, state.time_s + NOTICE_S, is_notice=True)
+    message = Message(one_line(detail), "", AMBER, state.time_s + NOTICE_S, is_notice=True)
     return replace(state, message=message)
 
 
-class _Pen:
-    """Draws texts and panels at one size of letters on one picture.
-
-    letter: height of a capital, pixels. A row is as high as a line of text with its margins.
-    """
-
-    def __init__(self, picture: Image, letter: int) -> None:
-        self.picture = picture
-        self.height, self.width = picture.shape[:2]
-        self.letter = letter
-        self.margin = max(2, letter // 2)
-        self.row = letter + 2 * self.margin
-        self._stroke = max(1, round(letter / 9))
-        unit = cv2.getTextSize("X", _FONT, 1.0, 1)[0][1]
-        self._scale = letter / unit
-
-    def measure(self, text: str) -> int:
-        """Width of a text, pixels."""
-        return int(cv2.getTextSize(text, _FONT, self._scale, self._stroke)[0][0])
-
-    def fit(self, text: str, width: int, keep_end: bool = False) -> str:
-        """As much of the text as `width` pixels hold, with dots where something is left out."""
-        if self.measure(text) <= width:
-            return text
-        for count in range(len(text) - 1, 0, -1):
-            short = _MORE + text[-count:] if keep_end else text[:count] + _MORE
-            if self.measure(short) <= width:
-                return short
-        return ""
-
-    def write(self, text: str, x: int, top: int, colour: _Colour) -> None:
-        """A text in the row that begins at `top`."""
-        baseline = top + self.margin + self.letter
-        cv2.putText(self.picture, text, (x, baseline), _FONT, self._scale, colour, self._stroke, cv2.LINE_AA)
-
-    def panel(self, x: int, y: int, width: int, height: int, colour: _Colour = _DARK) -> None:
-        """A rectangle through which the picture is dimly seen, cut at the picture's edges."""
-        part = self.picture[max(y, 0) : max(y + height, 0), max(x, 0) : max(x + width, 0)]
-        if part.size:
-            plain = np.full_like(part, colour)
-            part[...] = cv2.addWeighted(part, 1.0 - PANEL_OPACITY, plain, PANEL_OPACITY, 0.0)
+def draw_hand(pen: Pen, hand: Hand, box: Box) -> None:
+    """A hand with its token, or why it has none; box: where it lies in the pen's picture."""
+    is_read = hand.token is not None
+    colour = GREEN if is_read else AMBER
+    what = f"{hand.token} {hand.confidence:.0%}" if is_read else unread(hand.reason, is_short=True)
+    pen.frame(box, colour)
+    pen.label(f"{hand.side[0].upper()}: {what}", box, colour)
 
 
-def _draw_hand(pen: _Pen, hand: Hand) -> None:
-    x, y, width, height = hand.box
-    colour = _GREEN if hand.token is not None else _AMBER
-    cv2.rectangle(pen.picture, (x, y), (x + width, y + height), colour, max(1, round(pen.letter / 6)))
-    what = f"{hand.token} {hand.confidence:.0%}" if hand.token is not None else f"? {hand.reason}"
-    label = pen.fit(f"{hand.side[0].upper()}: {what}", pen.width - 2 * pen.margin)
-    wide = pen.measure(label) + 2 * pen.margin
-    # Above its box, or inside where the picture ends; never out of the picture at the sides.
-    left = max(0, min(x, pen.width - wide))
-    top = y - pen.row if y >= pen.row else y
-    pen.panel(left, top, wide, pen.row)
-    pen.write(label, left + pen.margin, top, colour)
-
-
-def _draw_sentence(pen: _Pen, state: OverlayState) -> None:
-    """The lowest two rows: the sentence so far with the time, and the hold that grows."""
-    top = pen.height - 2 * pen.row
+def _draw_sentence(pen: Pen, state: OverlayState, top: int) -> None:
+    """Two rows from `top` on: the sentence so far with the time, and the hold that grows."""
     pen.panel(0, top, pen.width, 2 * pen.row)
     clock = f"{state.time_s:.1f} s"
     clock_x = pen.width - pen.margin - pen.measure(clock)
-    pen.write(clock, clock_x, top, _GREY)
+    pen.write(clock, clock_x, top, GREY)
     text = pen.fit(one_line(state.sentence) or "idle", clock_x - 3 * pen.margin, keep_end=True)
-    pen.write(text, pen.margin, top, _WHITE if state.sentence else _GREY)
+    pen.write(text, pen.margin, top, WHITE if state.sentence else GREY)
     _draw_dwell(pen, state.dwell, top + pen.row)
 
 
-def _draw_dwell(pen: _Pen, dwell: Growth | None, top: int) -> None:
+def _draw_dwell(pen: Pen, dwell: Growth | None, top: int) -> None:
     left, right = pen.margin, pen.width - pen.margin
     low, high = top + pen.margin // 2, top + pen.row - pen.margin // 2
-    colour = _GREEN if dwell is not None and dwell.word is not None else _AMBER
+    colour = GREEN if dwell is not None and dwell.word is not None else AMBER
     if dwell is not None and right > left:
         end = left + round((right - left) * min(max(dwell.progress, 0.0), 1.0))
         pen.panel(left, low, end - left, high - low, colour)
-    cv2.rectangle(pen.picture, (left, low), (right, high), _GREY, 1)
+    cv2.rectangle(pen.picture, (left, low), (right, high), GREY, 1)
     if dwell is not None:
         meaning = dwell.word if dwell.word is not None else "no word"
         label = pen.fit(
             one_line(f"{dwell.pair[0]},{dwell.pair[1]}: {meaning}"), right - left - 2 * pen.margin
         )
-        pen.write(label, left + pen.margin, top, _WHITE)
+        pen.write(label, left + pen.margin, top, WHITE)
 
 
-def _draw_message(pen: _Pen, message: Message) -> None:
-    """The highest row, two where there is a reason: what was accepted or rejected last."""
+def _draw_message(pen: Pen, message: Message, top: int) -> None:
+    """One row from `top` on, two where there is a reason: what was accepted or rejected last."""
     rows = 2 if message.detail else 1
-    pen.panel(0, 0, pen.width, rows * pen.row)
     bar = max(2, pen.margin)
-    cv2.rectangle(pen.picture, (0, 0), (bar - 1, rows * pen.row - 1), message.colour, -1)
+    cv2.rectangle(pen.picture, (0, top), (bar - 1, top + rows * pen.row - 1), message.colour, -1)
     room = pen.width - bar - 2 * pen.margin
-    pen.write(pen.fit(message.text, room), bar + pen.margin, 0, message.colour)
+    pen.write(pen.fit(message.text, room), bar + pen.margin, top, message.colour)
     if message.detail:
-        pen.write(pen.fit(message.detail, room), bar + pen.margin, pen.row, _WHITE)
+        pen.write(pen.fit(message.detail, room), bar + pen.margin, top + pen.row, WHITE)

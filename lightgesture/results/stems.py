@@ -3,14 +3,18 @@
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
+
+DIVES: Final = "dives"
+"""Of the table over all inputs; no input has it."""
 
 
 def output_stems(inputs: Sequence[str]) -> list[str]:
     """A stem for the output files of each input, in the same order.
 
-    It is the input's own stem (a folder's whole name). Stems that occur twice, capitals aside, get folder
-    and suffix: `a/dive.mp4` and `b/dive.mp4` become `a_dive.mp4` and `b_dive.mp4`; where that does not
-    tell them apart, more folders, and where nothing does, a number.
+    It is the input's own stem (a folder's whole name). Stems that occur twice, or are the one that is taken
+    (`dives`), capitals aside, get folder and suffix: `a/dive.mp4` and `b/dive.mp4` become `a_dive.mp4` and
+    `b_dive.mp4`; where that does not tell them apart, more folders, and where nothing does, a number.
     """
     paths = [Path(name).absolute() for name in inputs]
     stems = [_short(path) for path in paths]
@@ -34,12 +38,12 @@ def _long(path: Path, depth: int) -> str:
 
 
 def _repeated(stems: Sequence[str]) -> list[int]:
-    counts = Counter(stem.casefold() for stem in stems)
+    counts = Counter([DIVES, *(stem.casefold() for stem in stems)])
     return [place for place, stem in enumerate(stems) if counts[stem.casefold()] > 1]
 
 
 def _numbered(stems: Sequence[str]) -> list[str]:
-    used: set[str] = set()
+    used = {DIVES}
     result = []
     for stem in stems:
         name, number = stem, 1

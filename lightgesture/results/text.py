@@ -5,13 +5,7 @@ from collections.abc import Callable
 from lightgesture.console import one_line
 from lightgesture.fsm import Instruction, Notice, Rejected
 from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
-
-_REASONS = {
-    "low_confidence": "too unsure to tell",
-    "unknown_shape": "no sign of the language",
-    "partial": "only partly in the picture",
-    "occluded": "covered",
-}
+from lightgesture.results.words import unread
 
 
 class TextPrinter:
@@ -71,6 +65,6 @@ def _count(number: int, noun: str) -> str:
 
 def _hand(hand: Hand) -> str:
     x, y, width, height = hand.box
-    reading = hand.token or f"not read: {_REASONS.get(hand.reason or '', hand.reason or 'no reason given')}"
+    reading = hand.token or f"not read: {unread(hand.reason)}"
     place = f"{width} x {height} pixels at {x}, {y}"
     return f"  {hand.side} hand: {reading}  (confidence {hand.confidence:.2f}; {place})"

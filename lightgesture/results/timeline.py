@@ -13,6 +13,7 @@ from lightgesture.models import CLASSES, NONE
 from lightgesture.records import FrameRecord, Record
 from lightgesture.results.atomic import replacing
 from lightgesture.results.ownership import SOFTWARE
+from lightgesture.results.words import rejected
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,6 +45,9 @@ _HANDS = {"left": ("#1f77b4", 0.15), "right": ("#d95f02", -0.15)}
 
 _WORD, _GOOD, _BAD = "#444444", "#2a9d4a", "#c0392b"
 _LEVELS = 3
+
+TURN_SHARE: Final = 0.6
+"""Share of the picture's time after which a text stands to the left of its place."""
 
 
 @dataclass(slots=True)
@@ -143,10 +147,11 @@ def _draw_outcomes(axes: "Axes", timeline: Timeline) -> None:
         if isinstance(event, Instruction):
             length = max(event.time_s - event.start_time_s, 0.0)
             axes.broken_barh([(event.start_time_s, length)], (level, 0.3), facecolors=_GOOD)
-            _text(axes, event.start_time_s, level + 0.35, f"{event.text}  {event.confidence:.0%}", _GOOD)
+            x, text, colour = event.start_time_s, f"{event.text}  {event.confidence:.0%}", _GOOD
         else:
             axes.plot([event.time_s], [level + 0.15], marker="x", color=_BAD)
-            _text(axes, event.time_s, level + 0.35, f"{event.text}: {event.reason}", _BAD)
+            x, text, colour = event.time_s, f"{event.text or 'rejected'}: {rejected(event.reason)}", _BAD
+        _text(axes, x, level + 0.35, text, colour, is_late=x > TURN_SHARE * timeline.end_s)
 
 
 def _empty(axes: "Axes") -> None:
@@ -154,6 +159,7 @@ def _empty(axes: "Axes") -> None:
     axes.set_ylim(-0.2, _LEVELS + 0.1)
 
 
-def _text(axes: "Axes", x: float, y: float, text: str, colour: str) -> None:
+def _text(axes: "Axes", x: float, y: float, text: str, colour: str, is_late: bool = False) -> None:
+    """A text from `x` on; of what is late to its left, so that the picture's end cuts nothing off."""
     style: dict[str, Any] = {"color": colour, "fontsize": 8, "clip_on": True, "parse_math": False}
-    axes.text(x, y, one_line(text), **style)
+    axes.text(x, y, one_line(text), ha="right" if is_late else "left", **style)

@@ -37,7 +37,7 @@ def draw_page(page: Page, dots_per_mm: float = DOTS_PER_MM) -> Image:
             case Text():
                 _draw_text(picture, item, dots_per_mm)
             case HandPicture():
-                _draw_hand(picture, item, dots_per_mm)
+                draw_hand(picture, item, dots_per_mm)
     return picture
 
 
@@ -86,7 +86,8 @@ def _draw_text(picture: Image, text: Text, dots_per_mm: float) -> None:
     cv2.putText(picture, plain, place, _FONT, scale, _bgr(text.colour), stroke, cv2.LINE_AA)
 
 
-def _draw_hand(picture: Image, hand: HandPicture, dots_per_mm: float) -> None:
+def draw_hand(picture: Image, hand: HandPicture, dots_per_mm: float) -> None:
+    """Draw a hand on a picture in place; one without a drawing is left out."""
     drawing = load_drawing(hand.token, hand.side, hand.kind)
     if drawing is None:
         return

@@ -8,7 +8,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
-from lightgesture.console import say
+from lightgesture.console import warn
 from lightgesture.errors import InputError
 from lightgesture.features.types import Image
 from lightgesture.frames import Frame
@@ -142,7 +142,7 @@ class BagFile(Source):
         self._check_end()
 
     def _tell(self, text: str) -> None:
-        say(f"{self.name}: {text}")
+        warn(f"{self.name}: {text}")
 
     def _video_frames(self, pictures: list[tuple[Image, int]]) -> Iterator[Frame]:
         for image, time_ns in pictures:

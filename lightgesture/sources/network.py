@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final, Self
 
-from lightgesture.console import say
+from lightgesture.console import warn
 from lightgesture.errors import InputError
 from lightgesture.features.types import Image
 from lightgesture.sources import types
@@ -101,7 +101,7 @@ class NetworkStream(LiveSource):
     def _tell(self, text: str) -> None:
         if not self._is_told:
             self._is_told = True
-            say(f"{self.name}: {text}")
+            warn(f"{self.name}: {text}")
 
 
 def _reason(error: Exception) -> str:

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.console import say
+from lightgesture.console import warn
 from lightgesture.errors import InputError
 from lightgesture.features.image import BitDepth, as_bgr8
 from lightgesture.features.types import Image
@@ -76,7 +76,7 @@ def to_image(content: bytes | Image) -> Image:
 
 def depth_of(name: str) -> BitDepth:
     """The bit depth of a source that is to be read, which tells the user where it must be raised."""
-    return BitDepth(lambda text: say(f"{name}: {text}"))
+    return BitDepth(lambda text: warn(f"{name}: {text}"))
 
 
 def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:

@@ -9,7 +9,7 @@ from datetime import datetime
 from typing import TYPE_CHECKING, Final
 
 from lightgesture.config import DEFAULT_FPS
-from lightgesture.console import say
+from lightgesture.console import warn
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.clock import RecordingClock, creation_time
@@ -84,7 +84,7 @@ class VideoFile(Source):
         start = container.start_time
         is_known = has_clock and start is not None
         self._clock = RecordingClock(start / _MICROSECONDS if is_known else None, self._period_s)
-        self._decoder = StreamDecoder(container, stream, lambda text: say(f"{self.name}: {text}"))
+        self._decoder = StreamDecoder(container, stream, lambda text: warn(f"{self.name}: {text}"))
         self._pictures = self._decoder.pictures()
         self._has_clock, self._lost = has_clock, 0
         self._lost_at: int | None = None
@@ -92,7 +92,7 @@ class VideoFile(Source):
         if self._next is None:
             raise InputError(f"{self.name}: {self._why_nothing()}")
         if not has_clock:
-            say(f"{self.name}: has no clock; taken for {fps:g} frames a second (--fps)")
+            warn(f"{self.name}: has no clock; taken for {fps:g} frames a second (--fps)")
 
     def close(self) -> None:
         """Close the file."""
@@ -147,7 +147,7 @@ class VideoFile(Source):
         lost, read = self._decoder.lost, last.index + 1
         self._lost += lost
         if self._lost:
-            say(f"{self.name}: left out {self._lost} damaged frame{'s' * (self._lost > 1)}")
+            warn(f"{self.name}: left out {self._lost} damaged frame{'s' * (self._lost > 1)}")
         if self._decoder.objection:
             unshown = f"{self._decoder.unshown} of its frames cannot be shown"
             raise InputError(f"{self.name}: {unshown}: {self._decoder.objection}; convert it")

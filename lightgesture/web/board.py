@@ -128,6 +128,11 @@ class Board:
             state = {**self._state, "run": self.run, "picture_age_s": age}
             return Update(self._version, state, [item for item in self._entries if item["number"] > entry])
 
+    def log(self) -> str:
+        """The entries that are kept, oldest first, one JSON object a line; `wall_s`: when, seconds since 1970."""
+        with self._changed:
+            return "".join(json.dumps(entry) + "\n" for entry in self._entries)
+
     @contextmanager
     def viewing(self) -> Iterator[None]:
         """Within this block somebody looks at pictures, and so they are drawn."""

@@ -51,7 +51,7 @@ class WebListener:
         grammar: Grammar | None = None,
     ) -> None:
         self._port, self._host = port, host
-        self._draw = draw or Overlay().draw
+        self._draw = draw or Overlay("below").draw
         self._language = None if grammar is None else Language(grammar)
         self._board = Board(None if self._language is None else self._language.expected)
         self._server: WebServer | None = None

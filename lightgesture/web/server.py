@@ -147,6 +147,8 @@ class _Handler(BaseHTTPRequestHandler):
             update = self._web.board.update(-1, 0, 0)
             content = {} if update is None else {**update.state, "entries": update.entries}
             self._send(json.dumps(content).encode(), "application/json")
+        elif path == "/log.jsonl":
+            self._send(self._web.board.log().encode(), "application/jsonl; charset=utf-8")
         elif path == "/stream.mjpg":
             self._stream()
         elif path == "/events":

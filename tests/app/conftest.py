@@ -1,5 +1,6 @@
 """Small videos, pictures and folders drawn on the spot, and a pipeline that needs no hands."""
 
+from types import SimpleNamespace
 from typing import ClassVar
 
 import cv2
@@ -22,6 +23,19 @@ def draw(value, size=SIZE):
     return image
 
 
+class FakeFront:
+    """Sees nothing, whatever it is shown."""
+
+    def for_stream(self):
+        return self
+
+    def recognize(self, image):
+        assert image.dtype == np.uint8
+
+    def shown(self):
+        return {}
+
+
 class FakePipeline:
     """Says HOVER at the second frame, one instruction, notice and rejection at the third.
 
@@ -32,6 +46,7 @@ class FakePipeline:
     made: ClassVar = []
     interrupt_at = None
     unknown = False
+    front = FakeFront()
 
     @property
     def decoder(self):

@@ -43,8 +43,27 @@ def test_version(run):
     ("arguments", "message"),
     [
         ([], "lightgesture: the following arguments are required: COMMAND; see lightgesture --help"),
-        (["frob"], "lightgesture: argument COMMAND: invalid choice: 'frob'"),
-        (["decode", "--hodl", "3"], "lightgesture: unrecognized arguments: --hodl; see lightgesture --help"),
+        (["frob"], "lightgesture: argument COMMAND: frob: unknown; use decode, live, "),
+        (
+            ["recgnize", "a.png"],
+            "lightgesture: argument COMMAND: recgnize: unknown; did you mean 'recognize'? see lightgesture --help",
+        ),
+        (
+            ["decode", "--hodl", "3"],
+            "lightgesture: unrecognized arguments: --hodl; did you mean --hold? see lightgesture decode --help",
+        ),
+        (
+            ["grammar", "draw", "--uot=a.svg"],
+            "lightgesture: unrecognized arguments: --uot; did you mean --out? see lightgesture grammar draw --help",
+        ),
+        (
+            ["doctor", "dive.mp4"],
+            "lightgesture: unrecognized arguments: dive.mp4; see lightgesture doctor --help",
+        ),
+        (
+            ["calibrate", "0", "--kind", "gloves"],
+            "lightgesture: argument --kind: gloves: unknown; did you mean 'glove'? see lightgesture calibrate --help",
+        ),
         (
             ["decode", "--hold"],
             "lightgesture: argument --hold: expected one argument; see lightgesture decode",
@@ -136,8 +155,8 @@ def test_one_line():
 
 def test_native_messages_are_muted():
     code = (
-        "import os, sys; from lightgesture.console import native_messages_muted, say\n"
-        "with native_messages_muted():\n"
+        "import os, sys; from lightgesture.console import messages_shown, native_messages_muted, say\n"
+        "with messages_shown(), native_messages_muted():\n"
         "    os.write(2, b'libnoise complains\\n'); say('två')\n"
         "os.write(2, b'back again\\n'); print('end', file=sys.stderr)"
     )
@@ -156,7 +175,7 @@ def test_progress_only_on_a_terminal_that_wants_it(monkeypatch, capsys, is_quiet
     with console.Progress("dive.avi", 4, "frame", is_quiet) as progress:
         progress.advance()
         progress.print_line("a result")
-        progress.say("a message")
+        progress.fail("a message")
         shown = sys.stderr.getvalue()
     monkeypatch.undo()
     assert ("dive.avi" in shown) is not is_quiet

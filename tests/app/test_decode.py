@@ -16,8 +16,9 @@ def records(lines):
 
 
 def names(folder):
-    """The files of results, without the manifest and the lock."""
-    return sorted(path.name for path in folder.iterdir() if not path.name.startswith(".lightgesture"))
+    """The files of results of each input, without the manifest, the lock and the table over all."""
+    passed = (".lightgesture", "dives.csv")
+    return sorted(path.name for path in folder.iterdir() if not path.name.startswith(passed))
 
 
 def of(stem):
@@ -70,6 +71,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "threshold": None,
         "grammar": "my.toml",
         "mirrored": True,
+        "rotate": 0,
     }
     assert [time_s for _, time_s, _ in fake.made[-1].seen] == [0.0, 0.25]
     run("decode", make_folder("frames", 2), "--hold-seconds", 0.4)
@@ -89,6 +91,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
         "threshold": None,
         "grammar": None,
         "mirrored": False,
+        "rotate": 0,
     }
 
 

@@ -10,7 +10,9 @@ import pytest
 
 from lightgesture.errors import ExitStatus
 from lightgesture.fsm import load_grammar
-from lightgesture.grammar.drawing import lay_out
+from lightgesture.grammar.drawing import to_svg
+from lightgesture.grammar.graph import RADIUS, lay_out
+from lightgesture.grammar.labels import labels_of
 from lightgesture.grammar.report import merge_words
 from lightgesture.records import FrameRecord, Hand
 
@@ -260,6 +262,47 @@ class TestDraw:
             assert all(0 <= x <= graph.size[0] and 0 <= y <= graph.size[1] for x, y in points)
             places = {place for place, _ in graph.circles}
             assert min(abs(a[0] - b[0]) + abs(a[1] - b[1]) for a in places for b in places if a != b) > 60
+
+    @pytest.mark.parametrize("name", [None, "sonar.toml", "repeat.toml"])
+    def test_no_label_covers_another_one_or_a_state(self, name):
+        graph = lay_out(load_grammar(None if name is None else EXAMPLES / name))
+        rects = [placed.rect for placed in graph.labels]
+        rects += [(x - RADIUS, y - RADIUS, 2 * RADIUS, 2 * RADIUS) for x, y in graph.states]
+        crossing = [
+            (one, other)
+            for place, one in enumerate(rects)
+            for other in rects[:place]
+            if one[0] < other[0] + other[2]
+            and other[0] < one[0] + one[2]
+            and one[1] < other[1] + other[3]
+            and other[1] < one[1] + one[3]
+        ]
+        assert crossing == []
+        assert all(x >= 0 and y >= 0 for x, y, _, _ in rects)
+        assert all(x + w <= graph.size[0] and y + h <= graph.size[1] for x, y, w, h in rects)
+
+    def test_labels_tell_the_signs(self):
+        rows = {
+            row.text or row.pair: row.pair
+            for state in labels_of(load_grammar())
+            for one in state.values()
+            for row in one
+        }
+        assert rows["HOVER"] == ("5", "5")
+        assert rows["STOP"] == ("ok", "0")
+        assert rows["PARAM n"] == ("n", "pic")
+        assert ("ok", "0..5") in rows
+
+    def test_own_tokens_stand_as_words(self, tmp_path):
+        path = tmp_path / "own.toml"
+        path.write_text(
+            'tokens = ["fist", "five"]\n[sentinels]\nstart = ["STOP"]\nend = "GO"\n[pairs]\n'
+            '"fist,fist" = "STOP"\n"five,five" = "HOVER"\n"five,fist" = "GO"\n'
+            '[[forms]]\nkind = "task"\nsentence = "STOP HOVER GO"\n'
+        )
+        svg = to_svg(lay_out(load_grammar(path))).decode()
+        assert svg.count(">fist</text>") == 3
+        assert "<use" not in svg
 
     def test_other_suffix_is_refused(self, run):
         result = run("grammar", "draw", "--out", "graph.gif")

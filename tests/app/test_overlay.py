@@ -7,6 +7,8 @@ from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.results.overlay import Overlay, OverlayState, advance, render
+from lightgesture.results.words import rejected as rejected_words
+from lightgesture.results.words import unread
 
 HAND = Hand(side="left", token="ok", confidence=0.93, box=(40, 60, 50, 40), track=1, reason=None)
 REFUSED = Hand(side="right", token=None, confidence=0.3, box=(-9, -5, 80, 70), track=2, reason="partial")
@@ -103,3 +105,32 @@ def test_what_is_seen_of_the_hold_grows():
         bar = render(image, OverlayState(dwell=growth))[-8:-4]
         shares.append(float((bar[..., 1] > bar[..., 2] + 60).mean()))
     assert shares[0] < 0.05 < shares[1] < 0.6 < shares[2]
+
+
+@pytest.mark.parametrize("size", [(1, 1), (48, 64), (240, 320), (1080, 1920)])
+@pytest.mark.parametrize("place", ["below", "beside"])
+def test_a_bar_covers_nothing(size, place):
+    image = np.full((*size, 3), 120, np.uint8)
+    overlay = Overlay(place)
+    drawn = overlay.draw(image, [state(0.0, "STOP HOVER 5", DWELL), rejected(0.0), instruction(0.5)])
+    assert (drawn[: size[0], : size[1]] == image).all()
+    grown = drawn.shape[0] > size[0] if place == "below" else drawn.shape[1] > size[1]
+    assert grown
+    again = overlay.draw(image, [state(9.0, ""), notice(9.0)])
+    assert again.shape == drawn.shape, "a video keeps its size"
+
+
+def test_hands_stand_where_the_picture_was_turned_to():
+    image = np.zeros((100, 200, 3), np.uint8)
+    hand = Hand(side="left", token="ok", confidence=0.9, box=(150, 10, 40, 30), track=1, reason=None)
+    drawn = Overlay(rotate=90).draw(image, [frame(0.0, hand)])
+    assert drawn.shape == (200, 100, 3)
+    assert drawn[150:190, 60].max() > 150, "the left edge of the box"
+
+
+def test_reasons_stand_in_words():
+    assert unread("low_confidence", is_short=True) == "unsure"
+    assert unread("of_my_own") == "of my own"
+    assert rejected_words("unread_sign") == "a sign was not read"
+    after = advance(OverlayState(), [rejected(1.0, detail="")])
+    assert after.message.detail == "too long or too large"

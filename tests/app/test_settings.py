@@ -40,7 +40,7 @@ def test_command_line_goes_before_the_file(config):
 def test_every_option_may_stand_in_the_file(config):
     path = config(
         'model = "/m.npz"\nselector = "classical"\nprofile = "/p.json"\n'
-        'grammar = "/g.toml"\nhold = 9\nmirrored = true\n'
+        'grammar = "/g.toml"\nhold = 9\nmirrored = true\nrotate = 180\n'
         'rule = "sentence"\ncaution = 1.5\nthreshold = 0.6\n'
         "fps = 12.5\njson = true\n"
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
@@ -62,6 +62,7 @@ def test_every_option_may_stand_in_the_file(config):
         "caution": 1.5,
         "threshold": 0.6,
         "mirrored": True,
+        "rotate": 180,
         "fps": 12.5,
         "as_json": True,
         "frames": True,
@@ -70,7 +71,7 @@ def test_every_option_may_stand_in_the_file(config):
         "web_host": "::1",
         "debug_dir": "/d",
         "quiet": True,
-        "annotate": True,
+        "annotate": "below",
         "plot": True,
         "jobs": 3,
         "cluster": "tcp://h:1",

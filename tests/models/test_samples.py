@@ -141,3 +141,13 @@ def test_the_outline_is_nine_percent_larger_on_each_side() -> None:
     landmarks = np.zeros((21, 2), np.float32)
     landmarks[1] = 100, 200
     assert landmark_box(landmarks) == (-9, -18, 118, 236)
+
+
+def test_pictures_under_the_gpl_are_left_out_and_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    licences = ("MIT", "GPL-3.0", "AGPL-3.0 (README)", "gpl", "LGPL", "none stated")
+    rows = [f"a.png,{token},,,,,,,,{licence}" for token in ("1", "none") for licence in licences]
+    kept = read_rows(manifest(tmp_path, *rows))
+    assert [row.licence for row in kept] == ["MIT", "LGPL", "none stated"] * 2
+    assert "6 of 12 pictures are under the GPL and left out" in capsys.readouterr().err

@@ -150,3 +150,44 @@ def test_a_class_that_no_grammar_could_name_is_refused_before_anything_is_drawn(
 def test_a_selector_that_could_not_be_written_is_refused_before_the_training(out, tmp_path, capsys):
     assert main(["train", "regions", "--data", str(tmp_path), "--out", str(tmp_path / out)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_other_steps_are_told_with_what_to_do(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train(folder, tmp_path / "mine.npz", "--quiet") == 0
+    assert (
+        main(["train", "svm", "--data", str(folder), "--out", str(tmp_path / "mine.npz"), "--steps", "20"])
+        == 2
+    )
+    (line,) = capsys.readouterr().err.splitlines()
+    assert (
+        "holds parts of another training (copies 1 and not 24, centres 50 and not 2000, steps 10 and not 20)"
+        in line
+    )
+    assert f"cp {tmp_path / 'mine.parts'}/patches.*" in line
+    # What the line says: patches that lie in the folder of another training are used.
+    other = tmp_path / "other.parts"
+    other.mkdir()
+    for file in (tmp_path / "mine.parts").glob("*.npy"):
+        (other / file.name).write_bytes(file.read_bytes())
+    (other / "patches.json").write_bytes((tmp_path / "mine.parts" / "patches.json").read_bytes())
+    assert train(folder, tmp_path / "other.npz", "--steps", "20") == 0
+    assert "draw patches" not in capsys.readouterr().err
+
+
+def test_an_interrupted_training_speaks_of_the_training(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("lightgesture.training.svm.train.train_svm", interrupt)
+    assert train(folder, tmp_path / "mine.npz", "--quiet") == 130
+    assert capsys.readouterr().err.splitlines() == [
+        f"lightgesture: interrupted; {tmp_path / 'mine.parts'} keeps what was drawn and learnt; the same command goes "
+        "on there"
+    ]
+    monkeypatch.setattr("lightgesture.training.svm.train.read_rows", interrupt)
+    assert train(folder, tmp_path / "other.npz", "--quiet") == 130
+    assert capsys.readouterr().err == "lightgesture: interrupted; nothing was drawn or learnt yet\n"

@@ -1,14 +1,16 @@
 """The page in headless Chromium, wide and narrow; needs `pip install playwright` and a Chromium of the system."""
 
+import json
 import shutil
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from lightgesture.fsm import Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand
+from lightgesture.records import FrameRecord, Hand, SummaryRecord
 from lightgesture.web import WebListener
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -77,6 +79,37 @@ def test_everything_is_shown_as_text_and_fits(page):
     assert page.text_content("#dwell-label") == "ok and 5: 5"
     assert page.text_content("#hands") == "right hand: 5"
     assert page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+
+
+@pytest.mark.parametrize("page", [390], indirect=True)
+def test_a_phone_keeps_the_last_outcome_in_view(page):
+    listener, image, page = page
+    listener.show(
+        image,
+        [RECORDS[0], *[Rejected(reason="timeout", text=f"STOP {n}", detail="late", **AT) for n in range(9)]],
+    )
+    wait_for(page, "document.getElementById('last-text').textContent === 'STOP 8'")
+    place = "document.getElementById('last').getBoundingClientRect()"
+    page.evaluate("window.scrollTo(0, document.body.scrollHeight)")
+    wait_for(page, "window.scrollY > 100")
+    assert page.evaluate(f"{place}.top >= 0 && {place}.bottom <= window.innerHeight")
+
+
+@pytest.mark.parametrize("page", [1280], indirect=True)
+def test_the_page_dims_when_the_stream_ends_and_gives_its_log(page):
+    listener, _, page = page
+    opacity = "getComputedStyle(document.querySelector('.picture')).opacity"
+    assert page.evaluate(opacity) == "1"
+    summary = {"frames": 4, "seconds": 0.1, "instructions": 0, "rejected": 1}
+    listener.show(None, [SummaryRecord(source="a", status="ok", ms_per_frame={}, stages_ms={}, **summary)])
+    wait_for(page, "document.getElementById('link').textContent === 'the stream has ended'")
+    assert float(page.evaluate(opacity)) < 0.5
+    with page.expect_download() as download:
+        page.click("#download")
+    line = json.loads(Path(download.value.path()).read_text())
+    assert (line["type"], line["text"]) == ("rejected", HOSTILE)
+    page.check("#sound")
+    page.uncheck("#sound")
 
 
 @pytest.mark.parametrize("page", [1280], indirect=True)

@@ -56,6 +56,14 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
 
+def kept_text(out: Path) -> str:
+    """What becomes of an interrupted training of the model `out`."""
+    folder = out.with_suffix(".parts")
+    if not folder.is_dir():
+        return "nothing was drawn or learnt yet"
+    return f"{folder} keeps what was drawn and learnt; the same command goes on there"
+
+
 def train_and_tell(
     train: Callable[[Callable[[str], None]], dict[str, Any]], out: Path, quiet: bool
 ) -> ExitStatus:
@@ -66,11 +74,15 @@ def train_and_tell(
     """
     from lightgesture.models import ModelError
     from lightgesture.training.card import summary
+    from lightgesture.training.time_left import NeverSilent
 
     try:
-        card = train((lambda _: None) if quiet else say)
+        with NeverSilent((lambda _: None) if quiet else say) as progress:
+            card = train(progress)
     except ModelError as error:
         raise UsageError(str(error)) from error
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(kept_text(out)) from None
     if not quiet:
         for line in summary(card, out):
             say(line)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.training.commands.classifier import kept_text
 from lightgesture.training.commands.train import PRECISIONS, model_path
 
 
@@ -58,6 +59,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.features.find.selector_file import SelectorError
     from lightgesture.training.pool.left_out import left_out
     from lightgesture.training.regions.train import RegionTraining, train_regions
+    from lightgesture.training.time_left import NeverSilent
 
     out = model_path(args.out)
     for name, value, least in (("seed", args.seed, 0), ("jobs", args.jobs, 1), ("steps", args.steps, 2)):
@@ -70,11 +72,13 @@ def run(args: argparse.Namespace) -> int:
     settings = RegionTraining(precision=args.precision, start=_start(args.start))
     if args.steps is not None:
         settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
-    progress = (lambda _: None) if args.quiet else say
     try:
-        train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
+        with NeverSilent((lambda _: None) if args.quiet else say) as progress:
+            train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
     except SelectorError as error:
         raise UsageError(f"--start: {error}") from error
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(kept_text(out)) from None
     return ExitStatus.OK
 
 

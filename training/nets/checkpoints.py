@@ -1,11 +1,18 @@
 """What every training of a net needs: torch, a folder for what is done already, and its peak of memory."""
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Final
 
 from lightgesture.errors import UsageError
 from lightgesture.results.atomic import replacing
+
+MOST_TOLD: Final = 3
+"""Settings that are named where requests differ."""
+
+_SETTING: Final = re.compile(r"\b(\w+)=('[^']*'|[^\s,()]+)")
 
 
 def need_torch() -> None:
@@ -19,15 +26,35 @@ def need_torch() -> None:
 
 
 def checkpoint_folder(out: Path, request: Mapping[str, object]) -> Path:
-    """The folder of what is done; UsageError where it belongs to another training."""
+    """The folder of what is done; UsageError where it belongs to another training: what differs, and what to do."""
     folder = out.with_suffix(".parts")
     note, text = folder / "request.json", json.dumps(dict(request), sort_keys=True)
-    if note.exists() and note.read_text(encoding="utf-8") != text:
-        raise UsageError(f"{folder}: holds parts of another training; remove it or give another --out")
+    if note.exists() and (before := note.read_text(encoding="utf-8")) != text:
+        raise UsageError(
+            f"{folder}: holds parts of another training{_difference(before, text)}; {_remedy(folder)}"
+        )
     if not note.exists():
         with replacing(note) as temporary:
             temporary.write_text(text, encoding="utf-8")
     return folder
+
+
+def _difference(before: str, now: str) -> str:
+    """What two requests differ in, as far as their settings tell."""
+    old, new = (dict(_SETTING.findall(text)) for text in (before, now))
+    changed = [name for name in new if name in old and old[name] != new[name]]
+    if not changed:
+        return " or of other pictures"
+    told = ", ".join(f"{name} {old[name]} and not {new[name]}" for name in changed[:MOST_TOLD])
+    return f" ({told}{', ...' if len(changed) > MOST_TOLD else ''})"
+
+
+def _remedy(folder: Path) -> str:
+    other = folder.with_name(f"other{folder.suffix}")
+    return (
+        "give the same options to go on with it, or another --out. To use its patches with other steps: "
+        f"mkdir {other}, cp {folder}/patches.* {folder}/contours.npy {other}, and --out {other.with_suffix('.npz')}"
+    )
 
 
 def peak_memory_mib() -> int | None:

@@ -15,7 +15,7 @@ from torch import Tensor
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.optimisers import NetOptimiser
 from lightgesture.training.nets.torch_network import TorchNetwork
-from lightgesture.training.time_left import TimeLeft
+from lightgesture.training.time_left import Pace
 
 Batch = tuple[Mapping[str, Tensor], tuple[Tensor, ...]]
 """Inputs of the net and what the loss compares with."""
@@ -71,7 +71,7 @@ def train_net(
     mean = copy.deepcopy(net)
     optimiser = NetOptimiser(net, settings.rate, settings.matrix_rate, DECAY)
     first = _resume(checkpoint, net, mean, optimiser)
-    left = TimeLeft(settings.steps, first)
+    pace = Pace(settings.steps, first)
     net.train()
     for step, (inputs, truth) in _ahead(batch, first, settings.steps, seed):
         if stopping is not None and stopping.is_set():
@@ -81,11 +81,10 @@ def train_net(
         torch.nn.utils.clip_grad_norm_(net.parameters(), LARGEST_GRADIENT)
         optimiser.step(_share_of_rate(step, settings))
         _average(mean, net, min(settings.mean, (step + 1) / (step + 10)))
+        if (left := pace.line(step + 1)) is not None:
+            loss_now = f"loss {float(value.detach()):.3f}"
+            progress(f"{checkpoint.stem}: step {step + 1} of {settings.steps}, {loss_now}, {left}")
         if (step + 1) % SAVE_EVERY == 0 or step + 1 == settings.steps:
-            progress(
-                f"{checkpoint.stem}: step {step + 1} of {settings.steps}, loss {float(value.detach()):.3f}, "
-                f"{left.told(step + 1)}"
-            )
             state = {"net": net.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict()}
             with replacing(checkpoint) as temporary:
                 torch.save({**state, "step": step + 1}, temporary)

@@ -22,6 +22,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.console import warn
 from lightgesture.errors import InputError, UsageError
 from lightgesture.features.types import Box, Image
 from lightgesture.fsm.language.schema import TOKEN
@@ -31,6 +32,9 @@ from lightgesture.training.tables import picture_path, table_rows
 
 KEPT_REACH = 2.2
 """Side of what is kept of a picture over the longer side of the hand's box: enough for any altered copy."""
+
+COPYLEFT = re.compile(r"(?<!L)GPL", re.IGNORECASE)
+"""In what a manifest says of a licence: the GPL and the AGPL, not the LGPL."""
 
 KEPT_PIXELS = 160
 """Longest side of what is kept, in pixels: larger ones only fill the memory, a patch being far smaller."""
@@ -70,8 +74,8 @@ def landmark_box(landmarks: NDArray[np.float32]) -> Box:
 def read_rows(data: Path, without: Collection[str] = ()) -> list[HandRow]:
     """Rows of a manifest, or of a folder with one folder a class.
 
-    without: sources that are left out. Raises InputError for what cannot be read or is missing, UsageError for names
-    that are no token, for a class without pictures, and for fewer than two classes.
+    without: sources that are left out, as pictures under the GPL always are. Raises InputError for what cannot be read
+    or is missing, UsageError for names that are no token, for a class without pictures, and for fewer than two classes.
     """
     rows = _folder_rows(data) if data.is_dir() else _manifest_rows(data)
     missing = [row.path for row in rows if not row.path.is_file()]
@@ -79,11 +83,19 @@ def read_rows(data: Path, without: Collection[str] = ()) -> list[HandRow]:
         raise InputError(
             f"{data}: {len(missing)} of {len(rows)} pictures are missing, first {missing[0]}; restore them"
         )
-    kept = [row for row in rows if row.source not in without]
+    kept = _without_copyleft(data, [row for row in rows if row.source not in without])
     counts = Counter(row.token for row in kept)
     if len(counts) < 2:
         found = f"the class {next(iter(counts))!r} alone" if counts else "no class"
         raise UsageError(f"{data}: holds {found}; a classifier needs pictures of at least two classes")
+    return kept
+
+
+def _without_copyleft(data: Path, rows: list[HandRow]) -> list[HandRow]:
+    """The rows without those under the GPL, whose terms could reach what is learnt from them; they are told."""
+    kept = [row for row in rows if COPYLEFT.search(row.licence) is None]
+    if len(kept) < len(rows):
+        warn(f"{data}: {len(rows) - len(kept)} of {len(rows)} pictures are under the GPL and left out")
     return kept
 
 

@@ -82,7 +82,8 @@ def few_originals(training: CnnTraining, count: int) -> Originals:
     """At most `count` hands, evenly spread over the rows of the training's table, and all other pictures of it."""
     rows = read_rows(training.data, training.without)
     places = np.linspace(0, len(rows) - 1, min(count, len(rows))).round().astype(int)
-    return read_originals([rows[place] for place in places], training.backgrounds, training.scenes)
+    chosen = [rows[place] for place in places]
+    return read_originals(chosen, training.backgrounds, training.scenes, training.divers, training.without)
 
 
 def draw_pool(

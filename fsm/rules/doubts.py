@@ -45,9 +45,11 @@ class Doubt:
 
 def find_doubt(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:
     """Why the reading in this slot, the best one and complete, may not be issued; None: it may."""
-    if search.margin(slot) < MARGIN * caution:
-        return Doubt(reason="ambiguous", detail=f"it could as well be {search.rival(slot)}; sign it again")
-    weak = find_weak(search.certainties(slot), reading.words, caution)
+    if search.standing.margin(slot) < MARGIN * caution:
+        return Doubt(
+            reason="ambiguous", detail=f"it could as well be {search.standing.rival(slot)}; sign it again"
+        )
+    weak = find_weak(search.standing.certainties(slot), reading.words, caution)
     if weak is not None:
         return Doubt(reason="weak_sign", detail=f"{weak} was not seen well; sign it again")
     return _find_gap(search, slot, reading, caution)
@@ -69,12 +71,12 @@ def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float
 
 def _find_gap(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:
     """Whether something was shown that the reading does not say."""
-    passed_s = float(search.longest[slot])
+    passed_s = float(search.beam.longest[slot])
     if passed_s > PASSED_S / caution:
         return Doubt(
             reason="passed_over", detail=f"{passed_s:.1f} s between two signs were not read; sign it again"
         )
-    behind, place = search.misfit(slot)
+    behind, place = search.standing.misfit(slot)
     if behind > MISFIT / caution:
         return Doubt(
             reason="does_not_fit", detail=f"{reading.words[place]} is not what was shown; sign it again"

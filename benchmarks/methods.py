@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, Word, load_grammar
+from lightgesture.fsm.language.settings import Rule
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord
 
@@ -59,6 +60,10 @@ class Stream(Protocol):
         ...
 
 
+RULE: Final[Rule] = "frames"
+"""When a sign counts, for every row: the paper's rule. `decoder.sentences` has what the product does by default."""
+
+
 class Method(Protocol):
     """A way from pictures to hands."""
 
@@ -98,7 +103,7 @@ class PipelineMethod:
 def product(model: str, selector: SelectorName = SELECTORS[0]) -> PipelineMethod:
     """The product with the named model; under the name of its selector too, where it is not the default one."""
     name = "lightgesture" if selector == SELECTORS[0] else f"lightgesture, {selector}"
-    return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, hold=hold))
+    return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, rule=RULE, hold=hold))
 
 
 class _PipelineStream:
@@ -160,7 +165,7 @@ class _PaperStream:
     def __init__(self, method: PaperMethod, chain: PaperChain, hold: int | None) -> None:
         self._method = method
         self._chain = chain
-        self._decoder = Decoder(load_grammar(), hold=hold)
+        self._decoder = Decoder(load_grammar(), rule=RULE, hold=hold)
         self._events: list[Event] = []
 
     def process(self, image: Image, time_s: float) -> list[Reading]:

@@ -192,15 +192,15 @@ class SentenceRule:
             self._reject(Doubt(reason="limit", detail=f"a sentence has at most {most} words"))
         elif reading.state in self._grammar.table.accepting:
             self._judge(lead, reading, now_s)
-        elif search.standing.is_over(lead) and not reading.asked and len(reading.spoken) > 1:
+        elif search.standing.is_over(lead) and not reading.asked:
             self._ask_again(lead, reading)
 
     def _ask_again(self, lead: int, reading: Reading) -> None:
         """A sign that was seen too badly to be issued with may be shown once more in place of itself."""
         standing = self.search.standing
-        if not is_weak(reading.words[-1], standing.certainty(lead), self._caution):
-            return
         count = len(reading.words)
+        if not is_weak(reading.words[-1], standing.certainty(lead), self._caution, opens=count == 1):
+            return
         words = {near.words[-1] for near in standing.near(lead, MARGIN) if len(near.words) == count}
         self.search.beam.ask(count, frozenset(words))
         if self._telling.told:

@@ -8,7 +8,6 @@ from lightgesture.fsm.rules.doubts import MARGIN, MISFIT, Doubt, is_weak
 from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.rules.readings import Reading
 from lightgesture.fsm.rules.search import Search
-from lightgesture.fsm.rules.steady import STEADY
 from lightgesture.fsm.sentence import Sentence
 
 
@@ -45,7 +44,7 @@ class Telling:
         words = reading.words
         standing = self._search.standing
         if words == self.told:
-            self.is_sure = self.is_sure or standing.certainty(lead) > STEADY
+            self.is_sure = self.is_sure or self._is_sure(reading, standing.certainties(lead))
             return None
         if standing.behind(lead) > MISFIT / self._caution:
             return None
@@ -60,8 +59,12 @@ class Telling:
             self.open(reading, agreed, certainties, now_s)
             self.tell_words(reading, agreed, kept, certainties)
             self.told, self._told_s = agreed, self._search.windows.now
-            self.is_sure = certainties[0] > STEADY or len(agreed) > 1
+            self.is_sure = len(agreed) > 1 or self._is_sure(reading, certainties)
         return None
+
+    def _is_sure(self, reading: Reading, certainties: list[float]) -> bool:
+        """Whether the first word was seen well enough to be issued with; until then it may be shown again."""
+        return not is_weak(reading.words[0], certainties[0], self._caution, opens=True)
 
     def _agreed(self, lead: int, reading: Reading) -> tuple[str, ...]:
         """The words with which all near readings begin; the end word comes with the verdict."""

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
-from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
@@ -22,10 +21,6 @@ from lightgesture.sources import live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
-
-
-HOLD_S: Final = 0.5
-"""Seconds for which a sign is held, unless the user or a grammar of the user's says otherwise."""
 
 
 def run_live(
@@ -48,7 +43,9 @@ def run_live(
     report = _make_report()
     clock = _make_clock()
     mailbox = Mailbox()
-    pipeline = open_stream(_for_pipeline(settings), source.name, debug, report)
+    # Listeners draw the hands, whether or not the sinks get frame records.
+    with_frames = settings.model_copy(update={"frames": True})
+    pipeline = open_stream(with_frames, source.name, debug, report)
     with ExitStack() as stack:
         listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
@@ -75,16 +72,6 @@ def run_live(
     if not settings.quiet:
         say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
     return ExitStatus.SOME_FAILED if reader.has_given_up else _status(loop, outboxes, stopping)
-
-
-def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
-    """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
-    a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
-    changes: dict[str, object] = {"frames": True}
-    given = settings.rule, settings.hold, settings.hold_seconds, settings.grammar
-    if given == (None, None, None, None):
-        changes["hold_seconds"] = HOLD_S
-    return settings.model_copy(update=changes)
 
 
 def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list[Listener]:

@@ -555,9 +555,13 @@ def test_a_rule_of_frames_has_no_seconds_and_a_rule_of_seconds_no_frames(grammar
     assert Decoder(grammar, rule="seconds").hold_seconds == 0.5
 
 
-def test_the_grammar_may_name_the_rule(write_grammar):
-    diver = Diver(load_grammar(write_grammar(('rule = "frames"', 'rule = "sentence"'))))
-    diver.decoder = Decoder(diver.decoder.grammar)
+def test_it_is_the_default_and_the_grammar_may_name_another(grammar, write_grammar):
+    by_frames = Decoder(load_grammar(write_grammar(('rule = "sentence"', 'rule = "frames"'))))
+    assert (by_frames.rule, by_frames.hold_frames) == ("frames", 15)
+    assert Decoder(load_grammar(write_grammar(('rule = "sentence"', "")))).rule == "sentence"
+    assert Decoder(grammar, hold=9).hold_frames == 9
+    diver = Diver(grammar)
+    diver.decoder = Decoder(grammar)
     assert (diver.decoder.rule, diver.decoder.hold_seconds, diver.decoder.hold_frames) == (
         "sentence",
         0.4,

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from lightgesture.features.find.selector import SELECTORS, SelectorName, load_se
 from lightgesture.features.profile import ColourProfile
 from lightgesture.features.types import Box
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, Word, load_grammar
+from lightgesture.fsm.language.settings import Rule
 from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord
@@ -63,6 +64,10 @@ class Stream(Protocol):
         ...
 
 
+RULE: Final[Rule] = "frames"
+"""When a sign counts, for every row: the paper's rule. `decoder.sentences` has what the product does by default."""
+
+
 class Method(Protocol):
     """A way from pictures to hands."""
 
@@ -102,7 +107,7 @@ class PipelineMethod:
 def product(model: str, selector: SelectorName = SELECTORS[0]) -> PipelineMethod:
     """The product with the named model; under the name of its selector too, where it is not the default one."""
     name = "lightgesture" if selector == SELECTORS[0] else f"lightgesture, {selector}"
-    return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, hold=hold))
+    return PipelineMethod(name, lambda hold: Pipeline(model=model, selector=selector, rule=RULE, hold=hold))
 
 
 def reading_method(
@@ -120,7 +125,7 @@ def reading_method(
     else:
         find = load_selector(SELECTORS[0], selector)
     front = HandReader(ReadingStage(classifier), find=find, colour=ColourStage(profile=profile))
-    return PipelineMethod(name, lambda hold: Pipeline(front.for_stream(), hold=hold))
+    return PipelineMethod(name, lambda hold: Pipeline(front.for_stream(), rule=RULE, hold=hold))
 
 
 class _PipelineStream:
@@ -182,7 +187,7 @@ class _PaperStream:
     def __init__(self, method: PaperMethod, chain: PaperChain, hold: int | None) -> None:
         self._method = method
         self._chain = chain
-        self._decoder = Decoder(load_grammar(), hold=hold)
+        self._decoder = Decoder(load_grammar(), rule=RULE, hold=hold)
         self._events: list[Event] = []
 
     def process(self, image: Image, time_s: float) -> list[Reading]:

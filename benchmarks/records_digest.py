@@ -2,7 +2,8 @@
 
 One line an input: the digest of all its records, times apart, and its name. Inputs are the bundled clip, videos named
 on the command line (the suite's cached clips, say), the ordered sequences of the data folder as streams, and all its
-whole frames as single pictures, each with every selector and classifier. Two runs are compared with --against.
+whole frames as single pictures, each with every selector and classifier and by the rules frames and sentence. Two runs
+are compared with --against.
 """
 
 import argparse
@@ -23,9 +24,10 @@ from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, is_sequence, read_frames, read_negatives
 
 METHODS: tuple[dict[str, Any], ...] = (
-    {"model": "cnn", "selector": "learned"},
-    {"model": "svm", "selector": "learned"},
-    {"model": "cnn", "selector": "classical"},
+    {"model": "cnn", "selector": "learned", "rule": "frames"},
+    {"model": "svm", "selector": "learned", "rule": "frames"},
+    {"model": "cnn", "selector": "classical", "rule": "frames"},
+    {"model": "cnn", "selector": "learned", "rule": "sentence"},
 )
 FPS = 30.0
 """Of the data folder's sequences, frames a second."""

@@ -80,7 +80,7 @@ def time_calls(call: Callable[[Image], object], frames: Sequence[Image], rounds:
 
 def time_pipeline(frames: Sequence[Image], model: str, rounds: int) -> Times:
     """Times of every stage and of whole frames of a stream, and of frames as single pictures."""
-    pipeline = Pipeline(model=model)
+    pipeline = Pipeline(model=model, rule="frames")
     seen = 0
 
     def process(frame: Image) -> None:

@@ -97,7 +97,7 @@ def frame_counts(clip: Path = SAMPLE, frames: range = FRAMES) -> FrameCounts:
     from lightgesture.pipeline import Pipeline
     from lightgesture.sources import open_source
 
-    pipeline = Pipeline(source=clip.name, frames=True)
+    pipeline = Pipeline(source=clip.name, rule="frames", frames=True)
     found = []
     with open_source(str(clip)) as source:
         for shown in source:

@@ -31,7 +31,7 @@ MODELS = ("cnn", "svm")
 EVERY = (1, 3)
 """Every so many frames of the clips' 30 a second: 30 and 10."""
 
-CAUTIONS = (0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0)
+CAUTIONS = (0.5, 0.75, 1.0, 1.25, 1.5, 2.0)
 FPS = 30.0
 SEED = 20261130
 IDLE_S = 3600.0

@@ -160,7 +160,7 @@ import cv2
 cv2.setNumThreads(1)
 import numpy
 from lightgesture.pipeline import Pipeline
-pipeline = Pipeline(selector="{selector}")
+pipeline = Pipeline(selector="{selector}", rule="frames")
 pipeline.process(numpy.random.default_rng(0).integers(0, 255, ({height}, {width}, 3), numpy.uint8), 0.0)
 print(json.dumps([time.time(), peak_memory()]))
 """

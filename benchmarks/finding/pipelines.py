@@ -61,7 +61,7 @@ def finding_pipeline(stages: Stages | None = None) -> Pipeline:
         colour=stages.colour() if stages.colour else None,
         track=stages.tracks,
     )
-    return Pipeline(front)
+    return Pipeline(front, rule="frames")
 
 
 def variant(name: str, stages: Stages) -> PipelineMethod:

@@ -30,9 +30,9 @@ class Limits:
 class DwellSettings:
     """When a sign counts.
 
-    rule: "frames", an unbroken run of `hold` frames (the paper's); "seconds", an unbroken run of `hold_seconds`,
-    whatever the camera's rate; "evidence", until the pair's seconds, weighed by their probability, less those of
-    anything else, come to `hold_seconds`; "sentence": the best reading of the whole sentence, see `SentenceSettings`.
+    rule: "sentence", the best reading of the whole sentence, see `SentenceSettings`; "frames", an unbroken run of
+    `hold` frames (the paper's); "seconds", an unbroken run of `hold_seconds`, whatever the camera's rate; "evidence",
+    until the pair's seconds, weighed by their probability, less those of anything else, come to `hold_seconds`.
     hold: frames, 1 to 1000; hold_seconds: 0.05 to 60. More gives fewer false words and slower signing. release:
     fraction of the hold, 0 to 1 and at least one frame, that a pair must be absent before it counts again; less lets
     a flicker double a word. unread: how long, as a multiple of the hold, hands may be seen between two words without
@@ -43,7 +43,7 @@ class DwellSettings:
     accepted word that drop an open sentence.
     """
 
-    rule: Rule = "frames"
+    rule: Rule = SENTENCE
     hold: int = 15
     hold_seconds: float = 0.5
     release: float = 0.2

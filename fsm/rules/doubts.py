@@ -1,5 +1,6 @@
 """What speaks against issuing the best reading of a complete sentence; every bound is made stricter by `caution`."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -11,26 +12,30 @@ from lightgesture.fsm.rules.search import Search
 MARGIN: Final = 2.5
 """How far the best reading with another text must be behind, in units of score, at caution 1."""
 
-WEAK: Final = 0.25
+WEAK: Final = 0.2
 """Least geometric mean probability of the less sure hand over the best window of each word, 0 to 1, at caution 1."""
 
-NUMBER: Final = 0.65
-"""The same of a digit, or of a word that carries a number: counts of fingers look alike, and no table speaks against
-another number. All others together are then half as likely at most."""
+START: Final = 0.6
+"""The same of the first word: nothing before it speaks against it, so that whatever else was shown would be left out
+of the sentence."""
+
+NUMBER: Final = 0.7
+"""The same of a digit, or of a word that carries a number, and of all numbers of a sentence together, as a product:
+counts of fingers look alike, no table speaks against another number, and a number is as sure as all of its digits."""
+
+END: Final = 0.6
+"""The same of the end word, without which nothing is issued."""
 
 MOST: Final = 0.9
 """What a sign needs at most, however great the caution: readers are hardly ever surer."""
 
-END: Final = 0.4
-"""The same of the end word, without which nothing is issued."""
-
-MOST_END: Final = 0.6
-"""What it is at most, however great the caution: the end word is judged as soon as it comes."""
+MOST_END: Final = 0.75
+"""What the end word needs at most: it is judged as soon as it comes."""
 
 PASSED_S: Final = 0.4
 """Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
 
-MISFIT: Final = 4.0
+MISFIT: Final = 5.0
 """How far a reading may fall behind the free loop within one word and the passage before it, in units of score, at
 caution 1."""
 
@@ -45,36 +50,48 @@ class Doubt:
 
 def find_doubt(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:
     """Why the reading in this slot, the best one and complete, may not be issued; None: it may."""
-    if search.margin(slot) < MARGIN * caution:
-        return Doubt(reason="ambiguous", detail=f"it could as well be {search.rival(slot)}; sign it again")
-    weak = find_weak(search.certainties(slot), reading.words, caution)
+    if search.standing.margin(slot) < MARGIN * caution:
+        return Doubt(
+            reason="ambiguous", detail=f"it could as well be {search.standing.rival(slot)}; sign it again"
+        )
+    weak = find_weak(search.standing.certainties(slot), reading.words, caution)
     if weak is not None:
         return Doubt(reason="weak_sign", detail=f"{weak} was not seen well; sign it again")
     return _find_gap(search, slot, reading, caution)
 
 
-def is_weak(word: str, certainty: float, caution: float) -> bool:
-    """Whether a sign was seen too badly for its word to be issued."""
-    is_number = is_digit(word) or split_carrier(word)[1] is not None
-    return certainty < min((NUMBER if is_number else WEAK) * caution, MOST)
+def is_weak(word: str, certainty: float, caution: float, *, opens: bool = False) -> bool:
+    """Whether a sign was seen too badly for its word to be issued. opens: the word is the first one."""
+    least = START if opens else NUMBER if _is_number(word) else WEAK
+    return certainty < min(least * caution, MOST)
+
+
+def _is_number(word: str) -> bool:
+    return is_digit(word) or split_carrier(word)[1] is not None
 
 
 def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float) -> str | None:
-    """The first word of a complete sentence that was seen too badly, its end word before all others."""
+    """The first word of a complete sentence that was seen too badly, its end word before all others; where all its
+    numbers are too unsure together, the least sure one."""
     if certainties[-1] < min(END * caution, MOST_END):
         return words[-1]
-    pairs = zip(words, certainties, strict=True)
-    return next((word for word, certainty in pairs if is_weak(word, certainty, caution)), None)
+    seen = list(zip(words, certainties, strict=True))
+    for place, (word, certainty) in enumerate(seen):
+        if is_weak(word, certainty, caution, opens=place == 0):
+            return word
+    numbers = [(certainty, word) for word, certainty in seen if _is_number(word)]
+    together = math.prod(certainty for certainty, _ in numbers)
+    return min(numbers)[1] if together < min(NUMBER * caution, MOST) else None
 
 
 def _find_gap(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:
     """Whether something was shown that the reading does not say."""
-    passed_s = float(search.longest[slot])
+    passed_s = float(search.beam.longest[slot])
     if passed_s > PASSED_S / caution:
         return Doubt(
             reason="passed_over", detail=f"{passed_s:.1f} s between two signs were not read; sign it again"
         )
-    behind, place = search.misfit(slot)
+    behind, place = search.standing.misfit(slot)
     if behind > MISFIT / caution:
         return Doubt(
             reason="does_not_fit", detail=f"{reading.words[place]} is not what was shown; sign it again"

@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
-from typing import Final
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
@@ -25,10 +24,6 @@ from lightgesture.sources import live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
-
-
-HOLD_S: Final = 0.5
-"""Seconds for which a sign is held, unless the user or a grammar of the user's says otherwise."""
 
 
 def run_live(
@@ -82,13 +77,8 @@ def run_live(
 
 
 def for_stream(settings: DecodeSettings) -> DecodeSettings:
-    """With frame records, for listeners draw the hands whether the sinks get them or not; and with a hold by time, for
-    a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
-    changes: dict[str, object] = {"frames": True}
-    given = settings.rule, settings.hold, settings.hold_seconds, settings.grammar
-    if given == (None, None, None, None):
-        changes["hold_seconds"] = HOLD_S
-    return settings.model_copy(update=changes)
+    """With frame records: listeners draw the hands whether the sinks get them or not."""
+    return settings.model_copy(update={"frames": True})
 
 
 def _serving(

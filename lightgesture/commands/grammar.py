@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "sequence",
                 metavar="PAIRS|RECORDS.jsonl",
                 help='pairs, the diver\'s left hand first, such as "ok,0 5,5 ok,ok"; each is held once and released. Or'
-                " what `decode --rule sentence --frames --json` recorded: the readings of each sentence",
+                " what `decode --frames --json` recorded: the readings of each sentence",
             )
         action.add_argument("file", nargs="?", metavar="FILE", help="grammar file (default: the bundled one)")
         action.add_argument("--grammar", metavar="FILE", help="the same, as the decoding commands have it")

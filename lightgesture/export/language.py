@@ -8,12 +8,15 @@ from typing import Any, Final
 from lightgesture.export.files import FlatFiles
 from lightgesture.fsm import Decoder, Grammar, Signs
 from lightgesture.fsm.language.forms import MENU, Form
+from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.fsm.signs import Pair
 
 FPS: Final = 30
 """Frames a second of the test sequences."""
 MOST_SENTENCES: Final = 24
 """Of a grammar with very many."""
+FRAMES: Final[Rule] = "frames"
+"""The rule of the test sequences where the grammar's is "sentence"."""
 SPARE: Final = 2
 """Frames by which a test sequence holds a pair longer than a word takes."""
 
@@ -45,7 +48,7 @@ def export_language(files: FlatFiles, grammar: Grammar) -> None:
         "programs": {str(number): name for number, name in grammar.programs.items()},
         "parameters": {str(number): asdict(one) for number, one in grammar.parameters.items()},
         "limits": asdict(grammar.limits),
-        "dwell": asdict(grammar.dwell),
+        "dwell": {**asdict(grammar.dwell), "rule": _rule(grammar)},
         "control": control,
     }
     files.add_json("grammar.json", content)
@@ -55,13 +58,18 @@ def export_language(files: FlatFiles, grammar: Grammar) -> None:
 
 def decode(grammar: Grammar, frames: Frames) -> list[dict[str, Any]]:
     """Events, without those for displays alone, of pairs that come one a frame."""
-    decoder = Decoder(grammar)
+    decoder = Decoder(grammar, rule=_rule(grammar))
     events = [
         event
         for frame, (left, right) in enumerate(frames)
         for event in decoder.step(Signs.of_tokens(left, right), frame / FPS, frame=frame)
     ]
     return [event.to_dict() for event in [*events, *decoder.finish()] if event.type != "state"]
+
+
+def _rule(grammar: Grammar) -> Rule:
+    """The grammar's rule, where it goes sign by sign: the search of "sentence" is code and no table."""
+    return FRAMES if grammar.dwell.rule == SENTENCE else grammar.dwell.rule
 
 
 def _pairs(words: Mapping[Pair, str]) -> list[list[str]]:
@@ -139,5 +147,5 @@ def _held(grammar: Grammar, pairs: list[Pair]) -> Frames:
 def _frames_of(grammar: Grammar) -> tuple[int, int]:
     """Frames of a hold and of a release, with some to spare."""
     dwell = grammar.dwell
-    need = dwell.hold if dwell.rule == "frames" else math.ceil(dwell.hold_seconds * FPS)
+    need = dwell.hold if _rule(grammar) == FRAMES else math.ceil(dwell.hold_seconds * FPS)
     return need + SPARE, math.ceil(need * dwell.release) + 1

@@ -28,7 +28,7 @@ def explain_records(grammar: Grammar, path: str) -> list[str]:
             lines += _readings(decoder)
     if not count:
         raise UsageError(
-            f"{path}: no frame record with probabilities; record some: decode VIDEO --rule sentence --frames --json"
+            f"{path}: no frame record with probabilities; record some: decode VIDEO --frames --json"
         )
     lines += [f"end     {text}" for text in tell(decoder.finish())]
     return lines

@@ -1,4 +1,4 @@
-"""The timeline picture of a video: signs of both hands, words, instructions and rejections over time."""
+"""The timeline picture of a video: signs of both hands, readings, words, instructions and rejections over time."""
 
 import warnings
 from collections.abc import Iterator, Sequence
@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from lightgesture.console import one_line
-from lightgesture.fsm import Instruction, Rejected, Word
+from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
 from lightgesture.models import CLASSES, NONE
 from lightgesture.records import FrameRecord, Record
 from lightgesture.results.atomic import replacing
 from lightgesture.results.ownership import SOFTWARE
+from lightgesture.results.readings_panel import draw_readings, has_readings
 from lightgesture.results.words import rejected
 
 if TYPE_CHECKING:
@@ -24,6 +25,9 @@ TOKENS = (NOT_READ, *(token for token in CLASSES if token != NONE))
 
 HEIGHT_IN: Final = 7.0
 """Height of the picture, inches."""
+
+READINGS_IN: Final = 2.0
+"""What the readings of the rule sentence add to it, inches."""
 
 LEAST_WIDTH_IN: Final = 10.0
 """Least width of the picture, inches."""
@@ -60,6 +64,8 @@ class Timeline:
     words: list[Word] = field(default_factory=list)
     instructions: list[Instruction] = field(default_factory=list)
     rejections: list[Rejected] = field(default_factory=list)
+    states: list[State] = field(default_factory=list)
+    repeats: list[Notice] = field(default_factory=list)
     end_s: float = 0.0
     rows: list[str] = field(default_factory=lambda: list(TOKENS))
 
@@ -81,6 +87,10 @@ class Timeline:
                 self.instructions.append(record)
             case Rejected():
                 self.rejections.append(record)
+            case State(certainty=certainty) if certainty is not None:
+                self.states.append(record)
+            case Notice(reason="repeat"):
+                self.repeats.append(record)
             case _:
                 pass
 
@@ -103,8 +113,13 @@ def draw_timeline(timeline: Timeline, name: str, path: Path) -> None:
 
     span_s = max(timeline.end_s, LEAST_SPAN_S)
     width = min(max(LEAST_WIDTH_IN, span_s * INCHES_PER_S), WIDTH_LIMIT_IN)
-    figure = Figure(figsize=(width, HEIGHT_IN), layout="constrained")
-    signs, said, issued = figure.subplots(3, 1, sharex=True, height_ratios=(5, 1.6, 1.8))
+    is_sentence = has_readings(timeline.states)
+    height = HEIGHT_IN + READINGS_IN * is_sentence
+    figure = Figure(figsize=(width, height), layout="constrained")
+    ratios = (5, *(2.2,) * is_sentence, 1.6, 1.8)
+    signs, *readings, said, issued = figure.subplots(len(ratios), 1, sharex=True, height_ratios=ratios)
+    for axes in readings:
+        draw_readings(axes, timeline.states, timeline.repeats)
     signs.set_title(one_line(name), parse_math=False, loc="left")
     _draw_signs(signs, timeline)
     _draw_words(said, timeline.words)

@@ -1,6 +1,5 @@
 """Small videos, pictures and folders drawn on the spot, and a pipeline that needs no hands."""
 
-from types import SimpleNamespace
 from typing import ClassVar
 
 import cv2

@@ -6,12 +6,16 @@ import sys
 import av
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.fsm import Instruction, Rejected, Word
+from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm.events import Certainty
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.results import open_annotated_video, open_plot
+from lightgesture.results.readings_panel import draw_readings
 from lightgesture.results.timeline import NOT_READ, TOKENS, Timeline
+from lightgesture.sources import read_picture
 
 
 def frames_of(path):
@@ -166,3 +170,41 @@ def test_timeline_of_nothing(tmp_path):
     with open_plot(tmp_path / "a.png", "a"):
         pass
     assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+def state(time_s, *words):
+    certainty = Certainty(words=words, expected="GO") if words else None
+    return State(
+        source=None, frame=0, time_s=time_s, state="collecting", sentence="", dwell=None, certainty=certainty
+    )
+
+
+def test_a_timeline_shows_the_readings_of_the_rule_sentence_and_where_a_word_was_doubted():
+    figure_axes = Figure().subplots()
+    repeat = Notice(source=None, frame=0, time_s=1.0, reason="repeat", detail="3 was not seen well")
+    states = [
+        state(0.0),
+        state(0.5, ("STOP", 0.9)),
+        state(0.7, ("STOP", 0.9), ("HOVER", 0.4)),
+        state(1.0, ("STOP", 0.9), ("FOLLOW", 0.5)),
+        state(9.0, ("CONTD", 0.8)),
+    ]
+    draw_readings(figure_axes, states, [repeat])
+    texts = [text.get_text() for text in figure_axes.texts]
+    assert texts == ["STOP", "HOVER", "… FOLLOW", "… CONTD", "3 was not seen well"]
+    steps = [
+        list(line.get_ydata())
+        for line in figure_axes.lines
+        if len(line.get_ydata()) and line.get_label()[0] == "_"
+    ]
+    assert steps[:2] == [[0.9, 0.4, 0.5], [0.8]]  # the line is broken where nothing was read
+
+
+def test_a_timeline_has_readings_only_where_the_rule_tells_them(tmp_path):
+    sizes = []
+    for shown in ([state(0.5)], [state(0.5, ("STOP", 0.9))]):
+        with open_plot(tmp_path / "a.png", "a") as timeline:
+            for record in shown:
+                timeline.write(record)
+        sizes.append(read_picture(tmp_path / "a.png").shape[0])
+    assert sizes[1] > sizes[0]

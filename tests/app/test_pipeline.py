@@ -340,7 +340,7 @@ def test_hands_in_view_that_are_not_read_drop_the_sentence():
 
 
 def test_hold_may_be_given_in_seconds():
-    records = decode([Signs.of_tokens("0", "0")] * 5, hold_seconds=0.2)
+    records = decode([Signs.of_tokens("0", "0")] * 5, rule="seconds", hold_seconds=0.2)
     assert [frame for frame, record in records if record.type == "word"] == [2]
 
 

@@ -8,6 +8,7 @@ import pytest
 from lightgesture.benchmarks.decoder.latency import (
     ACCEPTING,
     arguments,
+    as_read,
     measure,
     our_step,
     recorded,
@@ -23,7 +24,7 @@ from lightgesture.benchmarks.decoder.signing import (
     Outcome,
     sign,
 )
-from lightgesture.fsm import load_grammar
+from lightgesture.fsm import Decoder, load_grammar
 
 GRAMMAR = load_grammar()
 
@@ -92,8 +93,8 @@ def test_the_bound_grows_with_share_and_burst():
 
 
 def test_recorded_frames_make_the_words_where_they_say():
-    step = our_step(GRAMMAR)
-    frames = recorded()
+    step = our_step(GRAMMAR, "frames")
+    frames = recorded(GRAMMAR)
     types = [{event.type for event in step(*arguments(shown, index))} for index, shown in enumerate(frames)]
     assert [index for index, found in enumerate(types) if "word" in found] == [
         index for index, shown in enumerate(frames) if shown.kind == ACCEPTING
@@ -102,17 +103,29 @@ def test_recorded_frames_make_the_words_where_they_say():
 
 
 def test_latency_tables_have_every_kind_of_frame():
-    latency, throughput = measure(len(recorded()), 400)
+    count = len(recorded(GRAMMAR))
+    latency, throughput = measure(count, 400)
     assert {row["frames"] for row in latency.rows} == {"idle", "collecting", "accepting", "all"}
-    assert throughput.rows[0]["frames"] == len(recorded())
+    assert {(row["rule"], row["frames"]) for row in throughput.rows} == {("frames", count), ("sentence", 400)}
+    whats = [row["what"] for row in latency.rows]
+    assert [what for what in whats if f"{what}, second core busy" in whats] == whats[: len(whats) // 2]
+
+
+def test_the_rule_sentence_reads_the_recorded_frames_too():
+    frames = as_read(recorded(GRAMMAR), Decoder(GRAMMAR, rule="sentence"))
+    step = our_step(GRAMMAR, "sentence")
+    events = [event for index, shown in enumerate(frames) for event in step(*arguments(shown, index))]
+    assert sum(event.type == "instruction" for event in events) == 4
+    assert sum(shown.kind == ACCEPTING for shown in frames) == 17
+    assert {shown.kind for shown in frames} == {"idle", "collecting", ACCEPTING}
 
 
 @pytest.mark.parametrize("always", [True, False])
 def test_a_library_moves_where_the_decoder_reads_words(always):
     pytest.importorskip("transitions")
-    step, ours = transitions_step(GRAMMAR, always), our_step(GRAMMAR)
-    given = [arguments(shown, index) for index, shown in enumerate(recorded())]
+    step, ours = transitions_step(GRAMMAR, always), our_step(GRAMMAR, "frames")
+    given = [arguments(shown, index) for index, shown in enumerate(recorded(GRAMMAR))]
     words = [index for index, frame in enumerate(given) if any(e.type == "word" for e in ours(*frame))]
-    assert words == [index for index, shown in enumerate(recorded()) if shown.kind == ACCEPTING]
+    assert words == [index for index, shown in enumerate(recorded(GRAMMAR)) if shown.kind == ACCEPTING]
     assert [index for index, frame in enumerate(given) if step(*frame)] == words
     assert len(list(edges(GRAMMAR))) == sum(map(len, GRAMMAR.table.transitions))

@@ -25,8 +25,8 @@ ROUNDS = 2
 class FakePipeline:
     """Two stages a frame, timed by the real clock."""
 
-    def __init__(self, model):
-        assert model == "cnn"
+    def __init__(self, model, rule):
+        assert (model, rule) == ("cnn", "frames")
         self.front = SimpleNamespace(clock=StageClock())
         self.threads = set()
 
@@ -51,8 +51,8 @@ class FakeChain:
 def fake_pipelines(monkeypatch):
     made = []
 
-    def make(model):
-        made.append(FakePipeline(model))
+    def make(model, rule):
+        made.append(FakePipeline(model, rule))
         return made[-1]
 
     monkeypatch.setattr(timing, "Pipeline", make)

@@ -103,8 +103,8 @@ def test_pipeline_method_reads_frames_and_collects_events(monkeypatch, scene):
     assert [stream.process(scene, index / 30) for index in range(5)] == [[hand]] * 5
     assert stream.finish() == Decoded(("STOP", "HOVER", "GO"), ("STOP HOVER GO",), 0)
     assert FakePipeline.created == [
-        {"model": "some.npz", "selector": "learned", "hold": None},
-        {"model": "some.npz", "selector": "learned", "hold": 1},
+        {"model": "some.npz", "selector": "learned", "rule": "frames", "hold": None},
+        {"model": "some.npz", "selector": "learned", "rule": "frames", "hold": 1},
     ]
     assert method.name == "lightgesture"
     assert product("some.npz", "classical").name == "lightgesture, classical"

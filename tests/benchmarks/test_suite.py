@@ -28,7 +28,7 @@ class Oracle:
 
     def stream(self, hold):
         assert hold is None
-        self._decoder, self._events, self._index = Decoder(load_grammar()), [], 0
+        self._decoder, self._events, self._index = Decoder(load_grammar(), rule="frames"), [], 0
         return self
 
     def process(self, image, time_s):

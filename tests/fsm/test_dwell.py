@@ -82,7 +82,7 @@ def test_discard_of_nothing_changes_nothing():
 
 
 def test_default_hold_is_fifteen_frames(grammar):
-    decoder = Decoder(grammar)
+    decoder = Decoder(grammar, rule="frames")
     types = [[event.type for event in decoder.step(Signs.of_tokens("ok", "0"), 0.0)] for _ in range(16)]
     assert [frame for frame, seen in enumerate(types) if "word" in seen] == [14]
 
@@ -92,7 +92,7 @@ def test_hold_comes_from_the_grammar_unless_given(write_grammar):
 
     language = load_grammar(write_grammar(("hold = 15", "hold = 4"), ("release = 0.2", "release = 0.5")))
     for hold, first in ((None, 3), (6, 5)):
-        decoder = Decoder(language, hold=hold)
+        decoder = Decoder(language, rule="frames", hold=hold)
         seen = [decoder.step(Signs.of_tokens("ok", "0"), 0.0) for _ in range(8)]
         accepted = [i for i, events in enumerate(seen) if any(event.type == "word" for event in events)]
         assert accepted == [first]

@@ -191,9 +191,10 @@ class TestWhichRule:
         assert (count("seconds"), count("evidence")) == (0, 1)
 
     @pytest.mark.parametrize("seconds", [0.0, -1.0, float("nan"), float("inf")])
-    def test_seconds_out_of_range_are_refused(self, grammar, seconds):
+    @pytest.mark.parametrize("rule", ["seconds", "sentence"])
+    def test_seconds_out_of_range_are_refused(self, grammar, seconds, rule):
         with pytest.raises(ValueError, match="use a number above 0, such as"):
-            Decoder(grammar, hold_seconds=seconds)
+            Decoder(grammar, rule=rule, hold_seconds=seconds)
 
     def test_both_are_refused(self, grammar):
         with pytest.raises(ValueError, match="hold and hold_seconds exclude each other; give one of them"):
@@ -202,7 +203,7 @@ class TestWhichRule:
     def test_the_file_chooses(self, write_grammar, pick):
         language = load_grammar(
             write_grammar(
-                ('rule = "frames"', 'rule = "evidence"'), ("hold_seconds = 0.5", "hold_seconds = 0.3")
+                ('rule = "sentence"', 'rule = "evidence"'), ("hold_seconds = 0.5", "hold_seconds = 0.3")
             )
         )
         decoder = Decoder(language)

@@ -26,7 +26,7 @@ def test_without_a_sentence_it_is_only_told(diver, pick):
     assert pick(diver.words("STOP HOVER GO"), "instruction", field="text") == ["STOP HOVER GO"]
 
 
-@pytest.mark.parametrize("hold", [{"hold": 4}, {"hold_seconds": 0.1}])
+@pytest.mark.parametrize("hold", [{"hold": 4}, {"rule": "seconds", "hold_seconds": 0.1}])
 def test_a_hold_does_not_span_it(grammar, pick, hold):
     decoder = Decoder(grammar, **hold)
     stop = Signs.of_tokens("ok", "0")

@@ -10,7 +10,7 @@ from lightgesture.fsm import UNSEEN, Decoder, Sign, Signs, load_grammar
 from lightgesture.fsm.language.forms import spell
 from lightgesture.fsm.reader import Reader
 from lightgesture.fsm.reporter import Reporter, Timeline
-from lightgesture.fsm.rules import search
+from lightgesture.fsm.rules import beam
 from lightgesture.fsm.rules.sentence import SentenceRule
 
 RATES = (10, 30, 60)
@@ -296,10 +296,10 @@ def test_what_was_too_weak_to_be_told_is_forgotten_in_time(grammar):
         rule.process(
             Signs(likely("0", 0.3), likely("0", 0.2)), timeline.advance(frame / 30), 1 / 30 * (frame > 0)
         )
-    assert any(rule.search.readings)
+    assert any(rule.search.beam.readings)
     for frame in range(24, 924):
         rule.process(Signs(), timeline.advance(frame / 30), 1 / 30)
-    assert not any(rule.search.readings)
+    assert not any(rule.search.beam.readings)
 
 
 def test_a_word_that_opens_nothing_is_told(diver):
@@ -462,8 +462,8 @@ def test_memory_is_bounded_whatever_comes(grammar, rate):
         rule.process(
             Signs(likely(pair[0], 0.5), likely(pair[1], 0.5)), timeline.advance(frame / rate), 1 / rate
         )
-        assert sum(reading is not None for reading in rule.search.readings) <= search.MOST
-    assert rule.search.known_texts <= search.MOST_TEXTS
+        assert sum(reading is not None for reading in rule.search.beam.readings) <= beam.MOST
+    assert rule.search.beam.known_texts <= beam.MOST_TEXTS
 
 
 def test_a_sign_held_for_an_hour_is_one_word(grammar):
@@ -555,9 +555,13 @@ def test_a_rule_of_frames_has_no_seconds_and_a_rule_of_seconds_no_frames(grammar
     assert Decoder(grammar, rule="seconds").hold_seconds == 0.5
 
 
-def test_the_grammar_may_name_the_rule(write_grammar):
-    diver = Diver(load_grammar(write_grammar(('rule = "frames"', 'rule = "sentence"'))))
-    diver.decoder = Decoder(diver.decoder.grammar)
+def test_it_is_the_default_and_the_grammar_may_name_another(grammar, write_grammar):
+    by_frames = Decoder(load_grammar(write_grammar(('rule = "sentence"', 'rule = "frames"'))))
+    assert (by_frames.rule, by_frames.hold_frames) == ("frames", 15)
+    assert Decoder(load_grammar(write_grammar(('rule = "sentence"', "")))).rule == "sentence"
+    assert Decoder(grammar, hold=9).hold_frames == 9
+    diver = Diver(grammar)
+    diver.decoder = Decoder(grammar)
     assert (diver.decoder.rule, diver.decoder.hold_seconds, diver.decoder.hold_frames) == (
         "sentence",
         0.4,

@@ -118,7 +118,7 @@ def test_growing_hold_is_shown_at_most_five_times_a_second(new_diver, pick):
 
 
 def test_flickering_hands_are_shown_at_most_five_times_a_second(grammar):
-    decoder = Decoder(grammar)
+    decoder = Decoder(grammar, rule="frames")
     count = 0
     for frame in range(300):
         left = ("5", None, "ok")[frame % 3]
@@ -127,7 +127,7 @@ def test_flickering_hands_are_shown_at_most_five_times_a_second(grammar):
 
 
 def test_display_learns_that_a_hold_broke_off(grammar):
-    decoder = Decoder(grammar)
+    decoder = Decoder(grammar, rule="frames")
     (growing,) = decoder.step(Signs.of_tokens("ok", "0"), 0.0)
     assert growing.dwell.progress == pytest.approx(1 / 15, abs=1e-4)
     assert decoder.step(Signs(), 0.1) == []

@@ -48,13 +48,13 @@ def sign(decoder, pairs, words, lost=(), how="unread", held=22, passage=9, rate=
 @pytest.mark.parametrize("how", ["unread", "one hand", "flicker"])
 @pytest.mark.parametrize("lost", [(2,), (3,), (4,), (2, 3), (3, 4), (2, 3, 4)])
 def test_a_lost_sign_drops_the_sentence(grammar, words_to_pairs, pick, how, lost):
-    events = sign(Decoder(grammar), words_to_pairs, SIGNED, lost, how)
+    events = sign(Decoder(grammar, rule="frames"), words_to_pairs, SIGNED, lost, how)
     assert not pick(events, "instruction")
     assert pick(events, "rejected", field="reason") == ["unread_sign"]
 
 
 def test_the_rejection_tells_where_the_sign_was(grammar, words_to_pairs, pick):
-    (rejected,) = pick(sign(Decoder(grammar), words_to_pairs, SIGNED, (2,)), "rejected")
+    (rejected,) = pick(sign(Decoder(grammar, rule="frames"), words_to_pairs, SIGNED, (2,)), "rejected")
     assert rejected.text == "STOP HOVER"
     assert rejected.detail == "a sign after STOP HOVER was not read; sign the sentence again"
     assert rejected.frame == 2 * (9 + 22) + 18  # the nineteenth frame without a word, 1.2 holds allowing 18
@@ -65,17 +65,19 @@ def test_clean_signing_is_read_and_no_lost_sign_gives_another_instruction(
     grammar, words_to_pairs, pick, held, passage
 ):
     """The limit, 18 frames, is not less than a passage and less than a hold and two passages."""
-    signed = sign(Decoder(grammar), words_to_pairs, SIGNED, how="read", held=held, passage=passage)
+    signed = sign(
+        Decoder(grammar, rule="frames"), words_to_pairs, SIGNED, how="read", held=held, passage=passage
+    )
     assert pick(signed, "instruction", field="text") == ["STOP HOVER 35 GO"]
     for how, lost in product(("unread", "one hand", "flicker", "broken"), ((2,), (3, 4), (2, 3, 4))):
-        events = sign(Decoder(grammar), words_to_pairs, SIGNED, lost, how, held, passage)
+        events = sign(Decoder(grammar, rule="frames"), words_to_pairs, SIGNED, lost, how, held, passage)
         assert {*pick(events, "instruction", field="text")} <= {"STOP HOVER 35 GO"}, how
 
 
 @pytest.mark.parametrize("rate", [10, 30, 60])
 def test_the_rule_holds_in_seconds_too(grammar, words_to_pairs, pick, rate):
     def decode(lost, how):
-        decoder = Decoder(grammar, hold_seconds=0.5)
+        decoder = Decoder(grammar, rule="seconds")
         held, passage = round(0.8 * rate), round(0.3 * rate)
         return sign(decoder, words_to_pairs, SIGNED, lost, how, held, passage, rate)
 
@@ -96,7 +98,13 @@ def test_short_holds_leave_the_time_to_go_from_sign_to_sign(grammar, words_to_pa
 
 def test_hands_out_of_view_are_no_sign(grammar, words_to_pairs, pick):
     events = sign(
-        Decoder(grammar), words_to_pairs, "STOP HOVER 3 GO", (2,), "out of view", held=60, passage=5
+        Decoder(grammar, rule="frames"),
+        words_to_pairs,
+        "STOP HOVER 3 GO",
+        (2,),
+        "out of view",
+        held=60,
+        passage=5,
     )
     assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]
 
@@ -106,7 +114,7 @@ def test_hands_out_of_view_are_no_sign(grammar, words_to_pairs, pick):
 def test_a_grammar_may_count_hidden_signs_too(write_grammar, words_to_pairs, pick, rule, lost):
     language = load_grammar(
         write_grammar(
-            ('rule = "frames"', f'rule = "{rule}"'), ("count_hidden = false", "count_hidden = true")
+            ('rule = "sentence"', f'rule = "{rule}"'), ("count_hidden = false", "count_hidden = true")
         )
     )
     events = sign(Decoder(language), words_to_pairs, SIGNED, lost, "out of view" if lost else "read")
@@ -123,12 +131,12 @@ def test_hidden_time_adds_to_unread_time(write_grammar):
 
 
 def test_the_last_word_held_on_is_no_new_sign(grammar, words_to_pairs, pick):
-    events = sign(Decoder(grammar), words_to_pairs, "STOP HOVER GO", how="read", held=200)
+    events = sign(Decoder(grammar, rule="frames"), words_to_pairs, "STOP HOVER GO", how="read", held=200)
     assert pick(events, "instruction", field="text") == ["STOP HOVER GO"]
 
 
 def test_unread_signing_outside_a_sentence_says_nothing(grammar, pick):
-    decoder = Decoder(grammar)
+    decoder = Decoder(grammar, rule="frames")
     events = [event for _ in range(200) for event in decoder.step(Signs(Sign(None), Sign("5")), 0.0)]
     assert not pick(events, "rejected", "notice")
 

@@ -81,13 +81,13 @@ def test_plain_words_and_quiet(run, fake, monkeypatch):
 @pytest.mark.parametrize(
     ("given", "hold", "hold_seconds"),
     [
-        ([], None, 0.5),
+        ([], None, None),
         (["--hold", 9], 9, None),
         (["--hold-seconds", 0.8], None, 0.8),
         (["--grammar", "my.toml"], None, None),
     ],
 )
-def test_signs_are_held_by_time_unless_the_user_says_otherwise(
+def test_the_hold_is_the_grammars_unless_the_user_says_otherwise(
     run, fake, monkeypatch, given, hold, hold_seconds
 ):
     result = run_on_standard_input(run, monkeypatch, FILES[0], "--quiet", *given)

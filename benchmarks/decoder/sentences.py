@@ -144,6 +144,7 @@ def time_row(clips: Sequence[Recorded], grammar: Grammar, rule: Rule, rounds: in
 
 
 PARTS = tuple(suite for suite in SUITES if suite != NEGATIVE)
+SLOW_PARTS = tuple(f"{suite}_10" for suite in PARTS)
 DAMAGED_NOTE = "right: sound instructions that are left in them and were issued, of `valid`."
 TABLES: dict[str, tuple[str, tuple[str, ...], str]] = {
     "suite": ("Instructions of the suite", ("model", "rule", "fps", *PARTS, "wrong"), ""),
@@ -154,8 +155,17 @@ TABLES: dict[str, tuple[str, tuple[str, ...], str]] = {
     ),
     "caution": (
         "What caution costs, rule sentence",
-        ("model", "caution", *PARTS, "wrong", "damaged_right", "damaged_wrong_percent"),
-        "",
+        (
+            "model",
+            "caution",
+            *PARTS,
+            "wrong",
+            *SLOW_PARTS,
+            "wrong_10",
+            "damaged_right",
+            "damaged_wrong_percent",
+        ),
+        "…_10: at 10 frames a second.",
     ),
     "idle": ("Idle hands", ("model", "rule", "hours", "instructions"), ""),
     "time": ("Milliseconds a frame", ("model", "rule", "frames", "median_ms", "p95_ms", "p99_ms"), ""),
@@ -188,7 +198,8 @@ def measure(
         rows["idle"].append({**key, **idle_row(clips, grammar, rule)})
         rows["time"].append({**key, **time_row(clips[::4], grammar, rule)})
         if rule == "sentence":
-            rows["caution"] += [{"model": model, **one} for one in caution_rows(clips, made, grammar)]
+            slow = recorded[model, rule, EVERY[-1]]
+            rows["caution"] += [{"model": model, **one} for one in caution_rows(clips, slow, made, grammar)]
     return [
         Table(f"sentences_{name}", title, columns, tuple(rows[name]), note)
         for name, (title, columns, note) in TABLES.items()
@@ -196,14 +207,16 @@ def measure(
 
 
 def caution_rows(
-    clips: Sequence[Recorded], made: Sequence[Damaged], grammar: Grammar
+    clips: Sequence[Recorded], slow: Sequence[Recorded], made: Sequence[Damaged], grammar: Grammar
 ) -> Iterable[dict[str, Cell]]:
-    """What each caution issues of the clips and of what was damaged in them, by the rule sentence."""
+    """What each caution issues of the clips, at 30 and at 10 frames a second, and of what was damaged in them, by the
+    rule sentence."""
     for caution in CAUTIONS:
         whole, _ = damage_row(made, grammar, "sentence", caution)
         yield {
             "caution": caution,
             **suite_row(clips, grammar, "sentence", caution),
+            **{f"{name}_10": cell for name, cell in suite_row(slow, grammar, "sentence", caution).items()},
             "damaged_right": whole["right"],
             "damaged_wrong_percent": whole["wrong_percent"],
         }

@@ -92,7 +92,7 @@ class DecodeSettings(BaseModel):
     grammar: str | None = _option(None, "grammar file (default: the bundled one)", "FILE", kind="path")
     hold: int | None = _option(
         None,
-        "consecutive frames that a sign is held to count (default: the grammar's own, else 15)",
+        "consecutive frames that a sign is held to count, by the rule frames, which this chooses (15 by --rule frames)",
         "N",
         only=STREAMS,
         ge=1,
@@ -100,7 +100,7 @@ class DecodeSettings(BaseModel):
     )
     hold_seconds: float | None = _option(
         None,
-        "seconds that a sign is held to count, whatever the camera's rate; in place of --hold",
+        "seconds that a sign is held to count, whatever the camera's rate; least ones of a sign by the rule sentence",
         "S",
         only=STREAMS,
         ge=MIN_HOLD_S,
@@ -110,7 +110,7 @@ class DecodeSettings(BaseModel):
     rule: Literal["frames", "seconds", "evidence", "sentence"] | None = _option(
         None,
         "when signs count: each by itself, after a hold in frames or seconds or by evidence, or by the whole sentence"
-        " (default: the grammar's own)",
+        " (default: the grammar's own, else sentence)",
         "frames|seconds|evidence|sentence",
         only=STREAMS,
     )

@@ -136,3 +136,9 @@ def test_the_end_word_must_be_seen_well(grammar):
     signed = [("0,0", 0.98), ("5,5", 0.98)]
     assert outcome(grammar, [*signed, ("ok,ok", 0.65)])[:2] == (["STOP HOVER GO"], [])
     assert outcome(grammar, [*signed, ("ok,ok", 0.5)])[:2] == ([], ["weak_sign"])
+
+
+def test_a_word_after_a_hardly_seen_first_one_is_not_said_to_open_nothing(grammar):
+    """It may go on with what was too weak to be told; by itself it opens no sentence."""
+    assert outcome(grammar, [("5,5", 0.98)])[2] == ["HOVER opens no sentence; expected CONTD or STOP"]
+    assert outcome(grammar, [("0,0", 0.12), ("5,5", 0.98)])[2] == []

@@ -133,6 +133,12 @@ def test_the_instructions_of_the_study(grammar, rate, sentence):
     assert issued(diver.words(sentence)) == [text.replace("PARAM 3", "PARAM 3") for text in expected]
 
 
+@pytest.mark.parametrize("rate", [120, 500])
+def test_a_fast_camera_reads_the_same(grammar, rate):
+    """Frames that come faster than they are remembered share a place."""
+    assert issued(Diver(grammar, rate).words("STOP HOVER 5 GO")) == ["STOP HOVER 5 GO"]
+
+
 def test_dropped_frames_do_not_matter(grammar):
     rng = random.Random(5)
     for _ in range(5):

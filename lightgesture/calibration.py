@@ -7,7 +7,7 @@ from typing import Final, Literal
 from lightgesture.errors import InputError
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.selector import choose, load_selector
-from lightgesture.features.image import as_bgr8
+from lightgesture.features.image import as_bgr8, turned
 from lightgesture.features.profile import ColourProfile, Kind
 from lightgesture.features.profile_learning import learn_profile, proposed_share
 from lightgesture.features.types import Box, Image
@@ -71,20 +71,21 @@ class Calibration:
     lack: str | None
 
 
-def calibrate(source: Source, kind: Kind, place: Place, seconds: float) -> Calibration:
+def calibrate(source: Source, kind: Kind, place: Place, seconds: float, rotate: int = 0) -> Calibration:
     """Learn a profile from an open source. InputError: no hands, or a source that cannot be read.
 
     seconds: of the source that are looked at, from its first frame, above 0; pictures without hands are passed over.
+    rotate: degrees by which they are turned clockwise to stand upright, before `place` is looked at.
     """
-    shown = show_hands(source, place, seconds)
+    shown = show_hands(source, place, seconds, rotate)
     return learn(shown, kind, f"{source.name}, {len(shown.images)} pictures")
 
 
-def show_hands(source: Source, place: Place, seconds: float) -> Shown:
-    """Pictures of the first seconds that show hands: both where enough pictures do, else one."""
+def show_hands(source: Source, place: Place, seconds: float, rotate: int = 0) -> Shown:
+    """Pictures of the first seconds, turned upright, that show hands: both where enough pictures do, else one."""
     boxes_in = FoundHands().boxes if place is None else PlacedHands(place, source.name).boxes
     found: list[tuple[Image, tuple[Box, ...]]] = []
-    pictures, broke_off = look_at(source, seconds)
+    pictures, broke_off = look_at(source, seconds, rotate)
     for colour in pictures:
         boxes = boxes_in(colour)
         if boxes:
@@ -153,7 +154,7 @@ class FoundHands:
         return [hand.box for hand in hands]
 
 
-def look_at(source: Source, seconds: float) -> tuple[list[ColourMap], str | None]:
+def look_at(source: Source, seconds: float, rotate: int = 0) -> tuple[list[ColourMap], str | None]:
     """Working pictures at even distances over the first seconds, and why these are fewer, if the source broke off.
 
     At most twice as many as are wanted are held: where they overflow, every other one goes, and from there on only one
@@ -166,7 +167,7 @@ def look_at(source: Source, seconds: float) -> tuple[list[ColourMap], str | None
     try:
         for frame in _first_seconds(source, seconds):
             if count % stride == 0:
-                kept.append(stage.process(as_bgr8(frame.image)))
+                kept.append(stage.process(turned(as_bgr8(frame.image), rotate)))
             if len(kept) == 2 * PICTURES:
                 del kept[1::2]
                 stride *= 2

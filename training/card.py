@@ -21,6 +21,12 @@ THRESHOLDS: Final = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
 COST_OF_WRONG: Final = 10.0
 """Refused hands that are as bad as one that is read wrongly: a refused sign is held a moment longer, a wrong one may
 move a vehicle near a person once it has lasted for a whole hold."""
+LICENCE_NOTE: Final = (
+    "Where no licence is stated none is granted; MIT and Apache-2.0 allow use and change, CC BY-SA asks for "
+    "attribution and the same terms for changed pictures. Whether weights are a change of the pictures is open. "
+    "Pictures under the GPL are left out. No picture is part of the package; docs/data.md says more."
+)
+"""What the licences of the training pictures allow, in the card of each model."""
 FEW: Final = 20
 """Pictures of a class below which a card warns."""
 
@@ -105,6 +111,7 @@ def data_section(
             sorted(Counter(token for token, _ in {(row.token, row.source) for row in rows}).items())
         ),
         "licences": dict(Counter(row.licence for row in rows).most_common()),
+        "what_they_allow": LICENCE_NOTE,
         "backgrounds": {
             "pictures": len(originals.backgrounds),
             "sources": sorted({scene.source for scene in originals.backgrounds}),

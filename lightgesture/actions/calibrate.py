@@ -33,7 +33,7 @@ def run_calibrate(
     with open_any(source_name, settings.source_options) as source:
         if isinstance(source, StreamFrames):
             say(f"{source.name}: hold both open hands still before the camera for {seconds:g} s")
-        result = calibrate(source, kind, place, seconds)
+        result = calibrate(source, kind, place, seconds, settings.rotate)
     for line in _report(result):
         print_line(line)
     if result.lack is not None and not is_forced:

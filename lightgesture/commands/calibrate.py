@@ -35,8 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="X,Y,W,H|middle",
-        help="where a hand is held in every frame, for gloves that are not found by themselves: its box in pixels, "
-        "once or for both hands, or the middle of the picture",
+        help="where a hand is held in every frame, for gloves that are not found by themselves: its box in pixels of "
+        "the upright picture, once or for both hands, or the middle of the picture",
     )
     parser.add_argument("--force", action="store_true", help="write a profile that separates poorly too")
     add_options(parser, CALIBRATE)

@@ -134,7 +134,7 @@ def test_no_hands_is_one_line(run, make_folder, tmp_path):
         (["--seconds", "0"], "argument --seconds: 0 is not above 0"),
         (["--seconds", "nan"], "argument --seconds"),
         (["--seconds", "soon"], "argument --seconds"),
-        (["--kind", "mitten"], "argument --kind: invalid choice"),
+        (["--kind", "mitten"], "argument --kind: mitten: unknown; use skin, glove"),
         (["--size", "640"], "--size: should be WxH, not '640'; change it"),
         (["--size", "0x480"], "--size: should be WxH, not '0x480'"),
     ],
@@ -214,3 +214,12 @@ def test_a_file_that_is_no_profile_is_not_replaced(run, tmp_path):
     assert (result.status, len(result.err)) == (ExitStatus.USAGE, 1)
     assert f"{video}: is no profile and would be replaced; name another file with --out" in result.err[0]
     assert video.read_bytes() == b"mine"
+
+
+def test_a_turned_camera_is_turned_back():
+    images = [_gloves(seed) for seed in range(6)]
+    upright = show_hands(Stream(images), BOXES, 5.0)
+    lying = [np.ascontiguousarray(np.rot90(image)) for image in images]
+    shown = show_hands(Stream(lying), BOXES, 5.0, rotate=90)
+    assert shown.boxes == upright.boxes
+    assert all((one == other).all() for one, other in zip(shown.images, upright.images, strict=True))

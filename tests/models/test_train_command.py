@@ -41,6 +41,7 @@ def test_folders_become_a_model_and_its_card(
     card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
     assert card["data"]["per_class"] == {"1": 12, "5": 12, "none": 12}
     assert card["data"]["licences"] == {"none stated": 36}
+    assert card["data"]["what_they_allow"].startswith("Where no licence is stated none is granted")
     assert card["training"]["seed"] == 0
     assert card["held_out_sources"]["per_class"]["1"] > 0.8
     assert card["limits"]

@@ -75,7 +75,8 @@ def write_clip(path: Path) -> None:
 
 def decoded_sheet() -> Picture:
     """Two frames of the bundled clip as the decoder sees them, side by side: a digit held, and the instruction."""
-    overlay, shown = Overlay(), []
+    overlay = Overlay()
+    shown: list[Picture] = []
     with open_source(SAMPLE) as frames, Pipeline(source=SAMPLE.name) as pipeline:
         for frame in frames:
             records = pipeline.process(frame.image, frame.time_s, frame.index)

@@ -75,8 +75,13 @@ GLOVE_THICKNESS: Final = 1.13
 """Of a hand in neoprene, against a bare one."""
 
 LIGHT: Final = Light(
-    direction=(0.45, -0.6, 0.75), key=(0.8,) * 3, sky=(0.35,) * 3, ground=(0.16,) * 3, shadow=0.5
+    direction=(0.45, -0.6, 0.75),
+    key=(0.8, 0.8, 0.8),
+    sky=(0.35, 0.35, 0.35),
+    ground=(0.16, 0.16, 0.16),
+    shadow=0.5,
 )
+"""White, from the upper right: the thumb's side of a left hand before the mirror."""
 
 
 @dataclass(frozen=True, slots=True)

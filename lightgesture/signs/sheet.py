@@ -11,7 +11,7 @@ from typing import Final, Literal
 
 from lightgesture.errors import UsageError
 from lightgesture.results.atomic import replacing
-from lightgesture.signs.drawings import Kind
+from lightgesture.signs.drawings import Kind, load_drawing
 
 CAPITAL: Final = 0.72
 """Height of a capital letter as a share of the size of the letters."""
@@ -99,8 +99,6 @@ def wrapped(text: str, size: float, room: float) -> list[str]:
 
 def hand_items(x: float, y: float, size: float, token: str, side: str, kind: Kind) -> list[Item]:
     """A drawn hand, or the name of a token that has no drawing, in a square."""
-    from lightgesture.signs.drawings import load_drawing
-
     if load_drawing(token, side, kind) is not None:
         return [HandPicture(x, y, size, token, side, kind)]
     letters = fitting_size(token, size * 0.4, size * 0.8, bold=True)

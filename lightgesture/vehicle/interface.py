@@ -150,17 +150,17 @@ class Picture:
 class Status:
     """What is known of the vehicle at one moment; times are of the caller's clock, None: never.
 
-    heard_s: its last heartbeat. mode: its name in the profile, its number as text where that lacks it, "" before
-    the first heartbeat. is_mode_ours: whether the last change of mode was ordered here. boots: how often it was
+    heard_s: its last heartbeat. mode: its name in the profile, its number as text where that lacks it, "" before the
+    first heartbeat. foreign_modes: how often the mode changed that nobody here had ordered. boots: how often it was
     seen to start anew. pilot_s: when another's stick was last away from its middle. stick_s: when any stick of
-    another was last heard. rival_s: when another program with our own number was last heard. trouble: why it cannot
-    be told anything, such as two vehicles on the link; "" where it can. item: the last item of the mission that was
-    reached.
+    another was last heard. rival_s: when another program with our own number was last heard. trouble: why it cannot be
+    told anything, such as two vehicles on the link; "" where it can. item: the last item of the mission that was
+    reached. pictures: those that were taken since the last poll.
     """
 
     heard_s: float | None = None
     mode: str = ""
-    is_mode_ours: bool = True
+    foreign_modes: int = 0
     is_armed: bool = False
     boots: int = 0
     pilot_s: float | None = None

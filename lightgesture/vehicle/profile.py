@@ -38,7 +38,8 @@ class StickTable(Table):
     (SYSID_MYGCS). rate_hz: times a second; vehicles want 5 or more. cap: the furthest that any stick goes, 0 to 1;
     more is faster. ramp_s: seconds from the middle to the end of a stick's way, and back. neutral_s: seconds for
     which the middle is repeated at the end. z_neutral, z_range: the middle of z in the message and its way to
-    either side; 500 and 500 is the usual 0 to 1000.
+    either side; 500 and 500 is the usual 0 to 1000. between: whether the middle is sent between tasks too, while
+    nobody else's stick is on the link, for vehicles that disarm where sticks fall silent.
     """
 
     system: int = Field(default=255, ge=1, le=255)
@@ -48,6 +49,7 @@ class StickTable(Table):
     neutral_s: float = Field(default=1.0, ge=0.3, le=10)
     z_neutral: int = Field(default=500, ge=-1000, le=1000)
     z_range: int = Field(default=500, ge=1, le=1000)
+    between: bool = False
 
 
 class SafetyTable(Table):

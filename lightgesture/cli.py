@@ -51,6 +51,7 @@ EXTRAS = {
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
+    "gpiozero": "lamp",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

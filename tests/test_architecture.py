@@ -30,7 +30,18 @@ BELOW = {
 """Rooms, and the rooms that each may import."""
 
 HEAVY = frozenset(
-    {"av", "dask", "distributed", "matplotlib", "pydantic", "pymavlink", "rosbags", "sklearn", "torch"}
+    {
+        "av",
+        "dask",
+        "distributed",
+        "gpiozero",
+        "matplotlib",
+        "pydantic",
+        "pymavlink",
+        "rosbags",
+        "sklearn",
+        "torch",
+    }
 )
 """Libraries that only some uses need: imported in the function that uses them."""
 

@@ -99,7 +99,8 @@ class Executor:
 
     def answer(self, word: Word) -> None:
         """Have the vehicle nod or shake, where nothing stands against it; called in the thread of `tick`."""
-        self._motion.ask(word)
+        if self._task is None:
+            self._motion.ask(word)
 
     def tick(self, now_s: float) -> None:
         """Do what is to be done at `now_s`."""
@@ -154,6 +155,7 @@ class Executor:
         # The diver said that what is done shall end, whatever becomes of the rest.
         goes_on = self.goes_on
         self._stop(Fault(f"replaced by {record.text}"), now_s, is_held=False)
+        self._motion.is_allowed = True
         if not isinstance(plan, str) and reason is None and not self._must_wait(plan):
             self._begin(plan, now_s)
             return
@@ -211,6 +213,7 @@ class Executor:
     def _stop(self, found: Fault, now_s: float, is_held: bool = True) -> None:
         """Break the task off, and what waits for its turn; is_held: hold the vehicle where it would go on by itself."""
         self._motion.stop(now_s)
+        self._motion.is_allowed = False
         if self._waiting is not None:
             self._say("aborted", self._waiting.record.text, found.reason)
         goes_on, task = self.goes_on, self._task

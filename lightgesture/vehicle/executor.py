@@ -119,6 +119,10 @@ class Executor:
         self._advance(senses, now_s)
         self._sticks.tick(now_s, self._bench.status.stick_s)
 
+    def settle(self, now_s: float) -> None:
+        """After `close`: repeat the middle of the sticks where it is time, for one message may get lost."""
+        self._sticks.tick(now_s)
+
     def close(self, reason: str, now_s: float | None = None) -> None:
         """Sticks to the middle, everything ended, at once."""
         self._stop_all(Fault(reason), self._clock() if now_s is None else now_s)

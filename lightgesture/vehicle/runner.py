@@ -16,6 +16,9 @@ from lightgesture.vehicle.watchdog import Watchdog
 TICK_S: Final = 0.05
 """Seconds from one tick to the next: how late a fault is seen at most. Less takes more of a small board's time."""
 
+SETTLE_S: Final = 0.3
+"""Seconds for which the middle of the sticks is repeated at the end."""
+
 JOIN_S: Final = 1.0
 """Seconds that the end waits for the thread, which a link that is being opened may hold up."""
 
@@ -44,6 +47,11 @@ class Runner:
         self._words: list[Word] = []
         self._thread = threading.Thread(target=self._run, name="executor", daemon=True)
 
+    @property
+    def vehicle(self) -> MavlinkVehicle:
+        """Who is told."""
+        return self._vehicle
+
     def start(self) -> None:
         """Begin to obey."""
         self._thread.start()
@@ -71,8 +79,7 @@ class Runner:
                 self._tick()
                 self._stopping.wait(max(0.0, TICK_S - (time.monotonic() - start_s)))
             self._executor.close("the decoder ends")
-            # What was just said is for the pilot, too.
-            self._vehicle.poll(self._clock())
+            self._settle()
         except Exception as error:
             self._report(f"the executor gives up, which is a defect ({type(error).__name__}: {error})")
             self._executor.close("a defect of the executor")
@@ -85,6 +92,17 @@ class Runner:
             self._executor.answer(self._words.pop(0))
         self._executor.tick(self._clock())
         self._watchdog.sign(self._vehicle.wire(), self._packets())
+
+    def _settle(self) -> None:
+        """The last words: the middle of the sticks some times more, and a text for the pilot."""
+        end_s = time.monotonic() + SETTLE_S
+        while True:
+            now_s = self._clock()
+            self._vehicle.poll(now_s)
+            if not self._executor.holds_sticks or time.monotonic() >= end_s:
+                return
+            self._executor.settle(now_s)
+            time.sleep(TICK_S)
 
     def _packets(self) -> list[bytes]:
         """What the watchdog sends if we die now: nothing while nothing is done, for the vehicle is its pilot's then."""

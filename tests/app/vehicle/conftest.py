@@ -92,6 +92,18 @@ class FakeVehicle:
         return reply
 
 
+def picture_with(has_hands, *records):
+    hand = Hand(side="left", token="5", confidence=1.0, box=(0, 0, 9, 9), track=1, reason=None)
+    hands = (hand,) if has_hands else ()
+    return PICTURE, [FrameRecord(source="cam", frame=1, time_s=1.0, hands=hands), *records]
+
+
+@pytest.fixture
+def make_picture():
+    """Makes a picture, with hands or without, and its records."""
+    return lambda has_hands, *records: picture_with(has_hands, HEARTBEAT, *records)
+
+
 class World:
     """Executor, vehicle and clock. `run(s)` lets time pass with pictures, `records` is what was published."""
 
@@ -102,10 +114,7 @@ class World:
         self.has_pictures = self.has_hands = True
 
     def picture(self, *records):
-        hand = Hand(side="left", token="5", confidence=1.0, box=(0, 0, 9, 9), track=1, reason=None)
-        hands = (hand,) if self.has_hands else ()
-        frame = FrameRecord(source="cam", frame=1, time_s=1.0, hands=hands)
-        self.executor.show(PICTURE, [frame, *records])
+        self.executor.show(*picture_with(self.has_hands, *records))
 
     def run(self, seconds, each=lambda: None):
         for _ in range(round(seconds / TICK_S)):
@@ -155,7 +164,7 @@ class FakeAutopilot:
     is in no position: POSHOLD fails unless `has_position`.
     """
 
-    BEAT_S = 0.1
+    BEAT_S = 0.02
 
     def __init__(self):
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)

@@ -65,9 +65,10 @@ def test_the_old_message_where_the_command_is_not_known(boat, autopilot):
     assert (message.base_mode, message.custom_mode) == (1, 2)
 
 
-def test_a_mode_that_is_accepted_and_not_entered(boat, autopilot):
+def test_a_mode_that_is_accepted_and_not_entered(boat, autopilot, monkeypatch):
+    monkeypatch.setattr("lightgesture.vehicle.mavlink_modes.SHOWN_S", 0.2)
     autopilot.takes_mode = False
-    reply = boat.order(SetMode(names=("ALT_HOLD",)), seconds=4)
+    reply = boat.order(SetMode(names=("ALT_HOLD",)))
     assert (reply.state, reply.detail) == ("refused", "ALT_HOLD is not entered")
 
 

@@ -117,7 +117,7 @@ def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list
         return []
     from lightgesture.web import WebListener
 
-    page = stack.enter_context(WebListener(settings.web, settings.web_host))
+    page = stack.enter_context(WebListener(settings.web, settings.web_host, obeys=settings.obey is not None))
     if not settings.quiet:
         report(f"the page is at {page.address}")
     return [page]

@@ -296,10 +296,12 @@ class Boat:
 
     def __init__(self, autopilot, **options):
         self.profile = load_vehicle(options.pop("profile", "ardusub"))
-        self.vehicle = MavlinkVehicle(Link(autopilot.link), self.profile, **options)
+        link, is_heard = options.pop("link", autopilot.link), options.pop("is_heard", True)
+        self.vehicle = MavlinkVehicle(Link(link), self.profile, **options)
         self.autopilot, self.status = autopilot, Status()
         self.vehicle.note(HEARTBEAT)
-        self.until(lambda: self.status.heard_s is not None)
+        if is_heard:
+            self.until(lambda: self.status.heard_s is not None, seconds=10)
 
     def until(self, condition, seconds=3.0):
         end_s = time.monotonic() + seconds

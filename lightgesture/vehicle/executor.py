@@ -59,6 +59,7 @@ class Executor:
         self._beside = Beside(self._bench, self._say)
         self._motion = Motion(self._bench)
         self._now_s: float | None = None
+        self._is_watched = True
 
     @property
     def task(self) -> Task | None:
@@ -102,8 +103,10 @@ class Executor:
         if self._task is None:
             self._motion.ask(word)
 
-    def tick(self, now_s: float) -> None:
-        """Do what is to be done at `now_s`."""
+    def tick(self, now_s: float, is_watched: bool = True) -> None:
+        """Do what is to be done at `now_s`. is_watched: whether somebody lets go of the vehicle if this is the last
+        tick; else nothing is begun that moves it."""
+        self._is_watched = is_watched
         with self._lock:
             new, senses = list(self._inbox), self._senses
             self._inbox.clear()
@@ -131,8 +134,10 @@ class Executor:
     def _watch(self, task: Task, senses: Senses, now_s: float, gap_s: float) -> None:
         """End a task that must not go on."""
         status = self._bench.status
-        if gap_s > HELD_UP_S:
-            found: Fault | None = Fault(f"the program was held up for {gap_s:.2f} s")
+        if not self._is_watched:
+            found: Fault | None = Fault("the watchdog has ended")
+        elif gap_s > HELD_UP_S:
+            found = Fault(f"the program was held up for {gap_s:.2f} s")
         else:
             found = fault(status, task.begun, task.begun_s, senses, now_s, self._profile)
         if found is None:
@@ -177,6 +182,8 @@ class Executor:
     def _obstacle(self, plan: Plan, senses: Senses, now_s: float) -> str | None:
         status = self._bench.status
         reason = obstacle(status, senses, now_s, self._profile)
+        if reason is None and plan.is_moving and not self._is_watched:
+            reason = "the watchdog does not watch yet"
         if reason is None and plan.is_moving:
             reason = obstacle_to_motion(status, now_s, self._profile, plan.uses_sticks)
         return reason
@@ -196,7 +203,10 @@ class Executor:
             else:
                 self._say("aborted", plan.record.text, reason)
         if self._task is None:
-            self._motion.tick(senses, now_s)
+            if self._is_watched:
+                self._motion.tick(senses, now_s)
+            else:
+                self._motion.stop(now_s)
             return
         task = self._task
         task.tick(self._bench, now_s)

@@ -109,9 +109,9 @@ def pictured(number):
 
 
 def test_a_program_while_taking_pictures(world, instruction):
-    """Scenario a of the paper: stop the task and execute program 2 while taking snapshots."""
+    """Scenario a of the paper: stop the task and execute a program while taking snapshots."""
     world.sign(instruction("STOP HOVER 50 GO"))
-    world.sign(instruction("STOP EXEC 2 GO"))
+    world.sign(instruction("STOP EXEC 1 GO"))
     world.sign(instruction("CONTD SNAP GO"))
     assert [type(order) for order in world.vehicle.orders] == [SetMode, StartMission, TakePictures]
     assert world.vehicle.orders[2].count == 1
@@ -122,7 +122,8 @@ def test_a_program_while_taking_pictures(world, instruction):
     assert world.executor.goes_on
     world.vehicle.status["item"] = 3
     world.run(0.05)
-    assert world.states("STOP EXEC 2 GO") == ["sent", "accepted", "executing", "done"]
+    assert world.states("STOP EXEC 1 GO") == ["sent", "accepted", "executing", "done"]
+    assert world.vehicle.orders[-1] == SetMode(names=("POSHOLD", "ALT_HOLD"))
 
 
 def test_a_mission_that_ends_in_another_mode_is_done(world, instruction):

@@ -228,6 +228,8 @@ def test_a_pilot_is_seen_by_sticks_and_by_channels(boat, autopilot):
     boat.until(lambda: boat.status.pilot_s is not None)
     first_s = boat.status.pilot_s
     channels = [1500] * 18
+    channels[2] = 1100  # where it rests without a pilot
+    autopilot.send(common.MAVLink_rc_channels_message(199_900, 18, *channels, 0))
     channels[0] = 1900  # pitch, which is not among those of the profile
     autopilot.send(common.MAVLink_rc_channels_message(200_000, 18, *channels, 0))
     channels[4] = 1600

@@ -203,7 +203,9 @@ def test_what_ends_a_task_at_once(rig, cause, reason):
     [
         ("", "is_blind", 1.0, "no new picture for 1 s"),
         ("lost_diver_s = 0.5", "has_hands", 0.5, "the diver is lost: no hand for 0.5 s"),
-        ("", "is_silent", 1.5, "the link is lost: no heartbeat for 1.5 s"),
+        pytest.param(
+            *("", "is_silent", 1.5, "the link is lost: no heartbeat for 1.5 s"), marks=pytest.mark.slow
+        ),
     ],
     indirect=["rig"],
 )
@@ -351,10 +353,12 @@ def program(autopilot, tmp_path):
         child.wait()
 
 
-SLOW_SIGNALS = [pytest.param(number, marks=pytest.mark.slow) for number in (signal.SIGTERM, signal.SIGINT)]
+SLOW_SIGNALS = [
+    pytest.param(number, marks=pytest.mark.slow) for number in (signal.SIGSTOP, signal.SIGTERM, signal.SIGINT)
+]
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP, *SLOW_SIGNALS])
+@pytest.mark.parametrize("number", [signal.SIGKILL, *SLOW_SIGNALS])
 def test_the_end_of_the_process(program, autopilot, number):
     child = program()
     moment_s = time.monotonic()

@@ -67,12 +67,20 @@ def obstacle_to_motion(status: Status, now_s: float, profile: Profile, uses_stic
 
 
 def fault(
-    status: Status, begun: Status, begun_s: float, senses: Senses, now_s: float, profile: Profile
+    status: Status,
+    begun: Status,
+    begun_s: float,
+    senses: Senses,
+    now_s: float,
+    profile: Profile,
+    uses_sticks: bool = False,
 ) -> Fault | None:
     """Why a task that moves the vehicle must end; None: it may go on. begun, begun_s: the status at its beginning, and
-    when that was."""
+    when that was. uses_sticks: whether it holds sticks, which then nobody else may send."""
     if status.pilot_s is not None and status.pilot_s > begun_s:
         return Fault("a pilot moved a stick", is_anothers=True)
+    if uses_sticks and status.stick_s is not None and status.stick_s > begun_s:
+        return Fault("another's stick is on the link", is_anothers=True)
     if status.foreign_modes != begun.foreign_modes:
         return Fault(f"someone else changed the mode to {status.mode}", is_anothers=True)
     if status.boots != begun.boots:

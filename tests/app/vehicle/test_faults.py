@@ -139,6 +139,10 @@ def pilot_moves(rig):
     rig.autopilot.send(common.MAVLink_manual_control_message(1, 400, 0, 500, 0, 0), 255, 190)
 
 
+def joystick_is_switched_on(rig):
+    rig.autopilot.send(common.MAVLink_manual_control_message(1, 0, 0, 500, 0, 0), 255, 190)
+
+
 def mode_changes(rig):
     rig.autopilot.mode = 0
 
@@ -177,6 +181,7 @@ def program_is_stopped(rig):
     ("cause", "reason"),
     [
         (pilot_moves, "a pilot moved a stick"),
+        (joystick_is_switched_on, "another's stick is on the link"),
         (mode_changes, "someone else changed the mode to 0"),
         (vehicle_disarms, "the vehicle was disarmed"),
         (vehicle_starts_anew, "the vehicle started anew"),

@@ -18,8 +18,8 @@ from lightgesture.vehicle.sticks import Sticks
 from lightgesture.vehicle.task import Plan, Task, plan_for
 
 HELD_UP_S: Final = 0.25
-"""Seconds between two ticks that end a task: the watchdog has sent the middle meanwhile, and what was held is not
-taken up again by itself."""
+"""Seconds between two ticks that end a push or a mission: the watchdog has ended it meanwhile, and it is not taken up
+again by itself. Where nothing is held, as in HOVER, the watchdog had nothing to end."""
 
 CONTINUE: Final = "CONTD"
 """First word of a sentence that leaves the running task alone."""
@@ -120,7 +120,7 @@ class Executor:
         status = self._bench.status
         if not self._is_watched:
             found: Fault | None = Fault("the watchdog has ended")
-        elif gap_s > HELD_UP_S:
+        elif gap_s > HELD_UP_S and (self._sticks.is_held or self.goes_on):
             found = Fault(f"the program was held up for {gap_s:.2f} s")
         else:
             found = fault(

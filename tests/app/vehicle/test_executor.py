@@ -395,3 +395,12 @@ def test_the_word_to_kill_ends_everything(world, instruction):
     world.vehicle.sticks.clear()
     world.run(3)
     assert {stick for _, stick in world.vehicle.sticks} <= {NEUTRAL}  # who wanted an end wants no motion
+
+
+def test_a_hold_up_ends_a_push_and_not_a_hover(world, instruction):
+    for text, state in (("STOP HOVER 50 GO", "executing"), ("STOP UP 10 GO", "aborted")):
+        world.sign(instruction(text)).run(1)
+        world.now_s += 0.3
+        world.run(0.05)
+        assert world.states(text)[-1] == state
+    assert world.last[1] == "the program was held up for 0.35 s"

@@ -311,7 +311,9 @@ from lightgesture.fsm import Instruction
 from lightgesture.interruption import stop_signals
 from lightgesture.vehicle.executor import HELD_UP_S
 from lightgesture.vehicle.opening import open_runner
-link, profile, action = sys.argv[1:]
+link, profile, action, held_up_s = sys.argv[1:]
+import lightgesture.vehicle.executor
+lightgesture.vehicle.executor.HELD_UP_S = float(held_up_s)
 with stop_signals() as stopping:
     settings = DecodeSettings(mavlink=[link], obey=profile)
     told = []
@@ -340,8 +342,8 @@ def program(autopilot, tmp_path):
     path.write_text(PROFILE)
     children = []
 
-    def start(action="UP"):
-        command = [sys.executable, "-c", PROGRAM, autopilot.link, str(path), action]
+    def start(action="UP", held_up_s=5.0):
+        command = [sys.executable, "-c", PROGRAM, autopilot.link, str(path), action, str(held_up_s)]
         child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         children.append(child)
         end_s = time.monotonic() + 20
@@ -397,7 +399,7 @@ def test_a_mission_is_held_by_the_watchdog(program, autopilot, number):
 
 @pytest.mark.slow
 def test_a_process_that_goes_on_after_a_stop_does_not_take_the_sticks_again(program, autopilot):
-    child = program()
+    child = program(held_up_s=HELD_UP_S)
     child.send_signal(signal.SIGSTOP)
     time.sleep(0.6)
     child.send_signal(signal.SIGCONT)

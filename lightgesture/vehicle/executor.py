@@ -9,7 +9,16 @@ from lightgesture.fsm import Instruction
 from lightgesture.records import Record, VehicleRecord, VehicleState
 from lightgesture.vehicle.bench import Bench
 from lightgesture.vehicle.beside import Beside
-from lightgesture.vehicle.guard import PILOT_S, Fault, Senses, fault, is_recent, obstacle, obstacle_to_motion
+from lightgesture.vehicle.guard import (
+    PILOT_S,
+    Fault,
+    Senses,
+    fault,
+    is_recent,
+    last_of_another,
+    obstacle,
+    obstacle_to_motion,
+)
 from lightgesture.vehicle.intake import MAX_AGE_S, Intake
 from lightgesture.vehicle.interface import Reply, SetMode, Status, Vehicle
 from lightgesture.vehicle.motion import Motion, Word
@@ -104,7 +113,7 @@ class Executor:
             self._obey(record, senses, now_s)
         self._tell_hold()
         self._advance(senses, now_s)
-        self._sticks.tick(now_s, self._bench.status.stick_s)
+        self._sticks.tick(now_s, last_of_another(self._bench.status))
 
     def settle(self, now_s: float) -> None:
         """After `close`: repeat the middle of the sticks where it is time, for one message may get lost."""

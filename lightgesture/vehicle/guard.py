@@ -39,6 +39,13 @@ def is_recent(moment_s: float | None, now_s: float, span_s: float) -> bool:
     return moment_s is not None and now_s - moment_s <= span_s
 
 
+def last_of_another(status: Status) -> float | None:
+    """When another's stick was last heard, or seen to move; None: never."""
+    return max(
+        (moment_s for moment_s in (status.stick_s, status.pilot_s) if moment_s is not None), default=None
+    )
+
+
 def obstacle(status: Status, senses: Senses, now_s: float, profile: Profile) -> str | None:
     """Why nothing at all is begun; None: nothing stands against it."""
     safety = profile.safety

@@ -404,3 +404,12 @@ def test_a_hold_up_ends_a_push_and_not_a_hover(world, instruction):
         world.run(0.05)
         assert world.states(text)[-1] == state
     assert world.last[1] == "the program was held up for 0.35 s"
+
+
+def test_who_takes_the_sticks_after_a_push_is_left_alone(world, instruction):
+    world.sign(instruction("STOP UP 1 GO")).run(1.1)
+    assert world.records[-1].state == "done"
+    count = len(world.vehicle.sticks)
+    world.vehicle.status["stick_s"] = world.now_s
+    world.run(1)
+    assert len(world.vehicle.sticks) <= count + 2

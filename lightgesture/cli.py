@@ -65,6 +65,7 @@ EXTRAS = {
     "pymavlink": "mavlink",
     "serial": "mavlink",
     "fpdf": "print",
+    "gpiozero": "lamp",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

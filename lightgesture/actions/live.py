@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
+from typing import TYPE_CHECKING
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
@@ -16,11 +17,15 @@ from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.pipeline import Pipeline
+from lightgesture.records import VehicleRecord
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.results.overlay import Overlay
-from lightgesture.sinks import Outbox, Sink, make_sinks
+from lightgesture.sinks import Outbox, Sink, make_answers, make_sinks
 from lightgesture.sinks.printer import PrinterSink
 from lightgesture.sources import live_source, refuse_missing_device
+
+if TYPE_CHECKING:
+    from lightgesture.vehicle.runner import Runner
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -41,21 +46,20 @@ def run_live(
     """
     refuse_missing_device(source_name)
     source = live_source(source_name, settings.source_options)
-    sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
-    debug = make_debug_pictures(settings, DEBUG_STEM)
     report = make_report()
     clock = make_clock()
+
+    def tell(record: VehicleRecord) -> None:
+        loop.tell(record)
+
+    sinks = [_make_printer(settings, source.name), *make_sinks(settings, tell, clock)]
+    debug = make_debug_pictures(settings, DEBUG_STEM)
     mailbox = Mailbox()
     pipeline = open_stream(for_stream(settings), source.name, debug, report)
     with ExitStack() as stack:
-        listeners = [*listeners, *_serving(settings, stack, report, pipeline)]
         stopping = stack.enter_context(stop_signals())
-        outboxes = [Outbox(sink, report) for sink in sinks]
-        reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
-        parts: list[Outbox | Reader] = [*outboxes, reader]
-        for part in parts:
-            part.start()
-            stack.callback(part.stop)
+        runner = _obeying(settings, tell, report, clock, stopping)
+        outboxes = [Outbox(sink, report) for sink in (*sinks, *make_answers(settings, runner))]
         loop = LiveLoop(
             source.name,
             mailbox,
@@ -63,13 +67,19 @@ def run_live(
             outboxes,
             clock=clock,
             report=report,
-            listeners=listeners,
+            listeners=[*listeners, *_serving(settings, stack, report, pipeline), *filter(None, [runner])],
             frames=settings.frames,
             debug=debug,
             heartbeat_s=heartbeat_s,
             start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
             hints=None if settings.quiet else Hints(pipeline, settings.mirrored, settings.rotate),
         )
+        reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
+        # The last is ended first: a vehicle must not wait for what a sink still has to send.
+        parts: list[Outbox | Reader | Runner] = [*outboxes, reader, *filter(None, [runner])]
+        for part in parts:
+            part.start()
+            stack.callback(part.stop)
         loop.run(stopping)
     if not settings.quiet:
         say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
@@ -81,6 +91,21 @@ def for_stream(settings: DecodeSettings) -> DecodeSettings:
     return settings.model_copy(update={"frames": True})
 
 
+def _obeying(
+    settings: DecodeSettings,
+    tell: Callable[[VehicleRecord], None],
+    report: Report,
+    clock: Callable[[], float],
+    stopping: threading.Event,
+) -> "Runner | None":
+    """What carries the instructions out, where the user wants that."""
+    if settings.obey is None:
+        return None
+    from lightgesture.vehicle.opening import open_runner
+
+    return open_runner(settings, tell, report, clock, stopping)
+
+
 def _serving(
     settings: DecodeSettings, stack: ExitStack, report: Report, pipeline: Pipeline
 ) -> list[Listener]:
@@ -90,8 +115,9 @@ def _serving(
     from lightgesture.web import WebListener
 
     draw = Overlay("below", settings.rotate).draw
+    obeys = settings.obey is not None
     page = stack.enter_context(
-        WebListener(settings.web, settings.web_host, draw, grammar=pipeline.decoder.grammar)
+        WebListener(settings.web, settings.web_host, draw, pipeline.decoder.grammar, obeys)
     )
     if not settings.quiet:
         report(f"the page is at {page.address}")

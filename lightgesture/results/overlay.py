@@ -18,7 +18,7 @@ from lightgesture.features.image import as_bgr8, turned
 from lightgesture.features.types import Box, Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand, Record
+from lightgesture.records import FrameRecord, Hand, Record, VehicleRecord
 from lightgesture.results.words import rejected, unread
 
 Place = Literal["below", "beside", "over"]
@@ -106,6 +106,8 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
                 state = _say(state, "rejected: " + record.text, record.detail or rejected(record.reason), RED)
             case Notice():
                 state = _notice(state, record.detail)
+            case VehicleRecord():
+                state = _say_of_vehicle(state, record)
             case _:
                 pass
     message = state.message
@@ -168,6 +170,12 @@ def _ground(height: int, width: int) -> Image:
 def _say(state: OverlayState, text: str, detail: str, colour: Colour) -> OverlayState:
     message = Message(one_line(text), one_line(detail), colour, state.time_s + MESSAGE_S, is_notice=False)
     return replace(state, message=message, log=(message, *state.log)[:LOGGED])
+
+
+def _say_of_vehicle(state: OverlayState, record: VehicleRecord) -> OverlayState:
+    colour = RED if record.state in ("refused", "aborted") else GREEN
+    what = " ".join(filter(None, (record.state, record.instruction)))
+    return _say(state, f"vehicle: {what}", record.detail, colour)
 
 
 def _notice(state: OverlayState, detail: str) -> OverlayState:

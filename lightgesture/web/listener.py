@@ -39,8 +39,8 @@ class WebListener:
     """Serves the page; use it in a `with` block, or `start` and `stop` it.
 
     port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
-    draw: what makes the annotated picture. grammar: of the page of signs; None: there is none.
-    `show` never waits for a browser, and draws nothing itself.
+    draw: what makes the annotated picture. grammar: of the page of signs; None: there is none. obeys: whether a vehicle
+    says what becomes of instructions. `show` never waits for a browser, and draws nothing itself.
     """
 
     def __init__(
@@ -49,11 +49,12 @@ class WebListener:
         host: str = LOOPBACK,
         draw: Draw | None = None,
         grammar: Grammar | None = None,
+        obeys: bool = False,
     ) -> None:
         self._port, self._host = port, host
         self._draw = draw or Overlay("below").draw
         self._language = None if grammar is None else Language(grammar)
-        self._board = Board(None if self._language is None else self._language.expected)
+        self._board = Board(None if self._language is None else self._language.expected, obeys)
         self._server: WebServer | None = None
         self._threads: list[threading.Thread] = []
 

@@ -10,7 +10,7 @@ let heard = 0;
 let paused = false;
 let audio = null;
 const UNREAD = { low_confidence: "unsure", unknown_shape: "no sign", partial: "cut off", occluded: "covered" };
-const KINDS = { instruction: "accepted", rejected: "rejected", notice: "notice" };
+const KINDS = { instruction: "accepted", rejected: "rejected", notice: "notice", vehicle: "vehicle" };
 const TONES = { instruction: [660, 880], rejected: [220, 165] };
 const TONE_S = 0.14;
 
@@ -48,6 +48,7 @@ function showState(state) {
   if (state.frames !== undefined) numbers.push(state.frames + " pictures decoded", state.dropped + " passed over",
     state.ms_per_frame.toFixed(1) + " ms a picture");
   put("numbers", numbers.join(", "));
+  put("tasks", state.tasks.length ? "under way: " + state.tasks.join(", ") : "");
   if (state.ended !== null) tell("the stream has ended" + (state.ended === "ok" ? "" : " (" + state.ended + ")"), "bad", true);
   else if (state.picture_age_s === null) tell("no picture yet", "bad");
   else if (state.picture_age_s > 2) tell("no picture for " + Math.round(state.picture_age_s) + " s", "bad", true);
@@ -84,12 +85,14 @@ function showEntry(entry) {
   if (document.querySelector('[data-number="' + Number(entry.number) + '"]')) return;
   const item = document.createElement("li");
   item.className = entry.type;
+  if (entry.state === "refused" || entry.state === "aborted") item.classList.add("rejected");
   item.dataset.number = Number(entry.number);
   const clock = new Date(entry.wall_s * 1000).toLocaleTimeString([], { hour12: false });
-  item.append(line("strong", entry.text ?? entry.detail));
+  const said = entry.type === "vehicle" ? entry.state + " " + (entry.instruction ?? "") : entry.text;
+  item.append(line("strong", said ?? entry.detail));
   const more = [clock, KINDS[entry.type]];
   if (entry.type === "instruction") more.push("confidence " + entry.confidence.toFixed(2));
-  if (entry.type === "rejected") more.push(entry.detail);
+  if (entry.type === "rejected" || entry.type === "vehicle") more.push(entry.detail);
   item.append(line("span", more.join(" · ")));
   showLast(entry, more.join(" · "));
   // What was there before the page was opened makes no sound.

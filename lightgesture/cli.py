@@ -49,6 +49,7 @@ EXTRAS = {
     "dask": "cluster",
     "distributed": "cluster",
     "rosbags": "bag",
+    "mujoco": "sim",
     "pymavlink": "mavlink",
     "serial": "mavlink",
 }

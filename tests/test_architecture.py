@@ -30,7 +30,21 @@ BELOW = {
 """Rooms, and the rooms that each may import."""
 
 HEAVY = frozenset(
-    {"av", "dask", "distributed", "matplotlib", "pydantic", "pymavlink", "rosbags", "sklearn", "torch"}
+    {
+        *(
+            "av",
+            "dask",
+            "distributed",
+            "matplotlib",
+            "mujoco",
+            "pydantic",
+            "pymavlink",
+            "rclpy",
+            "rosbags",
+            "rospy",
+        ),
+        *("sklearn", "torch"),
+    }
 )
 """Libraries that only some uses need: imported in the function that uses them."""
 

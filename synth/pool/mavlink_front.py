@@ -47,7 +47,6 @@ class MavlinkFront:
         self.is_deaf = False
         pilot.parameters["SYSID_THISMAV"] = float(system)
         self._packer = common.MAVLink(_Writer(write), system, AUTOPILOT)
-        self._parsers: dict[object, Any] = {}
         self._now_s = 0.0
         self.camera = CameraComponent(common, common.MAVLink(_Writer(write), system, NUMBER))
         self._teller = Teller(common, self._packer, pilot)
@@ -63,15 +62,15 @@ class MavlinkFront:
         if self._teller.tell(now_s, motion):
             self.camera.heartbeat()
 
-    def receive(self, content: bytes, now_s: float, peer: object = None) -> None:
-        """Take bytes from a peer; damaged packets are passed over."""
+    def receive(self, content: bytes, now_s: float) -> None:
+        """Take a datagram of whole packets; damaged ones are passed over."""
         if self.is_deaf:
             return
         self._now_s = now_s
-        parser = self._parsers.get(peer)
-        if parser is None:
-            parser = self._parsers[peer] = self.dialect.MAVLink(None)
-            parser.robust_parsing = True
+        parser = self.dialect.MAVLink(
+            None
+        )  # a new one, for half a packet shall not swallow the next datagram
+        parser.robust_parsing = True
         for message in parser.parse_buffer(content) or ():
             self._take(message)
 

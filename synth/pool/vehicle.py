@@ -90,8 +90,8 @@ class UdpPort:
                 except OSError:  # nobody there now; the next datagram may find somebody
                     continue
 
-    def receive(self) -> tuple[bytes, tuple[str, int]] | None:
-        """The next datagram and who sent it, None where none is there."""
+    def receive(self) -> bytes | None:
+        """The next datagram, None where none is there."""
         while True:
             try:
                 content, peer = self._socket.recvfrom(PACKET_BYTES)
@@ -102,7 +102,7 @@ class UdpPort:
             if peer not in self._peers:
                 self._peers.append(peer)
             self.send(content, without=peer)
-            return content, peer
+            return content
 
     def close(self) -> None:
         """Free the port."""
@@ -142,7 +142,7 @@ def _run(args: argparse.Namespace) -> int:
         while not stopping.is_set():
             now_s = time.monotonic() - start_s
             while (datagram := port.receive()) is not None:
-                vehicle.front.receive(datagram[0], vehicle.body.time_s, datagram[1])
+                vehicle.front.receive(datagram, vehicle.body.time_s)
             vehicle.advance(now_s)
             time.sleep(max(0.0, CONTROL_S - (time.monotonic() - start_s - now_s)))
     port.close()

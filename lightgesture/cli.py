@@ -18,6 +18,8 @@ from lightgesture.interruption import terminated_as_interrupted
 COMMANDS = {
     "decode": ("lightgesture.commands.decode", "videos, folders of frames and bags to instructions"),
     "live": ("lightgesture.commands.live", "a camera or a stream to instructions, as they are signed"),
+    "ros2": ("lightgesture.commands.ros2", "a node of ROS 2: pictures of a topic in, instructions out"),
+    "ros1": ("lightgesture.commands.ros1", "the same for ROS 1"),
     "recognize": ("lightgesture.commands.recognize", "single pictures to hands and their tokens"),
     "calibrate": ("lightgesture.commands.calibrate", "some seconds of open hands to a colour profile"),
     "doctor": (

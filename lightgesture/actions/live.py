@@ -18,7 +18,7 @@ from lightgesture.live.loop import HEARTBEAT_S
 from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.sinks import Outbox, Sink, make_sinks
 from lightgesture.sinks.printer import PrinterSink
-from lightgesture.sources import live_source, refuse_missing_device
+from lightgesture.sources import LiveSource, live_source, refuse_missing_device
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -29,20 +29,22 @@ HOLD_S: Final = 0.5
 
 
 def run_live(
-    source_name: str,
+    source: str | LiveSource,
     settings: DecodeSettings,
     listeners: Sequence[Listener] = (),
     heartbeat_s: float = HEARTBEAT_S,
 ) -> ExitStatus:
-    """Decode a stream until it ends for good, nobody takes the records any more, or a signal asks for the end.
+    """Decode a stream, by its name or as it stands, until it ends for good, nobody takes the records any more, or a
+    signal asks for the end.
 
     OK, also after SIGTERM, for a service that is asked to stop has not failed; INTERRUPTED after Ctrl-C; SOME_FAILED
     if the reader of standard output went away and nobody else takes the records, the stream was given up, or not one
     picture could be decoded.
     UsageError: the source, an option, the model or the grammar is wrong.
     """
-    refuse_missing_device(source_name)
-    source = live_source(source_name, settings.source_options)
+    if isinstance(source, str):
+        refuse_missing_device(source)
+        source = live_source(source, settings.source_options)
     sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
     debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()

@@ -124,6 +124,30 @@ class HeartbeatRecord:
         return asdict(self)
 
 
+VehicleState = Literal["sent", "accepted", "refused", "executing", "done", "aborted"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleRecord:
+    """What became of an instruction at the vehicle, with `--obey` or `--mavlink-map`.
+
+    time_s: seconds since the start. state: "sent" (the vehicle was told), "accepted" (it takes it), "executing"
+    (how far it is), "done", "refused" (it does not do it), "aborted" (it was broken off). instruction: its text;
+    None for what concerns the vehicle alone. detail: what, and why.
+    """
+
+    type: Literal["vehicle"] = field(default="vehicle", init=False)
+    source: str | None = None
+    time_s: float
+    utc: str | None = None
+    state: VehicleState
+    instruction: str | None
+    detail: str
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+
 def utc_text(start: datetime | None, time_s: float | None) -> str | None:
     """The moment `time_s` seconds after `start`, ISO 8601 in UTC to the millisecond; None where either is unknown."""
     if start is None or time_s is None:
@@ -135,4 +159,4 @@ def utc_text(start: datetime | None, time_s: float | None) -> str | None:
     return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-Record = FrameRecord | SummaryRecord | HeartbeatRecord | Event
+Record = FrameRecord | SummaryRecord | HeartbeatRecord | VehicleRecord | Event

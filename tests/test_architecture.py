@@ -54,6 +54,8 @@ AT_MODULE_LEVEL = {
         "fsm/language/schema.py",
         "lightgesture/config/*.py",
         "mavlink_map.py",
+        "lightgesture/vehicle/profile*.py",
+        "lightgesture/vehicle/steps.py",
         "synth/*.py",
     ),
     "torch": ("training/nets/*.py", "benchmarks/paper/net.py"),

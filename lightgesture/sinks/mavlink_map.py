@@ -1,8 +1,5 @@
 """Which MAVLink messages an instruction leads to: a TOML file that the user writes, and nothing without it.
 
-target_system = 1
-target_component = 1
-
 [[value]]                            # NAMED_VALUE_INT or NAMED_VALUE_FLOAT
 action = "HOVER"
 name = "LG_HOVER"
@@ -49,6 +46,12 @@ None of them arms or disarms, lands, starts a mission, changes the mode by its n
 reboots or ends the flight. Whatever else somebody needs goes through a USER command, which the vehicle's own program
 decides upon.
 """
+
+CAMERA_COMMANDS = frozenset(name for name in COMMANDS if "_IMAGE_" in name or "_VIDEO_" in name)
+"""Commands for a camera, which is a component of its own: the autopilot does not hand them on."""
+
+CAMERA_COMPONENT, AUTOPILOT_COMPONENT = 100, 1
+"""Whom commands are for, unless the file says otherwise."""
 
 NAME_BYTES = 10
 """Longest name of a named value."""
@@ -103,10 +106,14 @@ class ValueRule(_Rule):
 
 
 class CommandRule(_Rule):
-    """A COMMAND_LONG; command: a name in `COMMANDS`. params: the first of its seven parameters, the others are 0."""
+    """A COMMAND_LONG; command: a name in `COMMANDS`. params: the first of its seven parameters, the others are 0.
+
+    component: whom it is for; None: the file's, or else a camera for what cameras do and the autopilot for the rest.
+    """
 
     command: str
     params: list[Value] = Field(default_factory=list, max_length=PARAMS)
+    component: int | None = Field(default=None, ge=0, le=255)
 
     @field_validator("command")
     @classmethod
@@ -117,12 +124,12 @@ class CommandRule(_Rule):
 
 
 class MavlinkMap(BaseModel):
-    """The whole file; target_system and target_component: whom the commands are for."""
+    """The whole file; target_system: number of the vehicle; None: learnt. target_component: whom commands are for."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    target_system: int = Field(default=1, ge=1, le=255)
-    target_component: int = Field(default=1, ge=0, le=255)
+    target_system: int | None = Field(default=None, ge=1, le=255)
+    target_component: int | None = Field(default=None, ge=0, le=255)
     value: list[ValueRule] = Field(default_factory=list)
     command: list[CommandRule] = Field(default_factory=list)
 
@@ -132,12 +139,24 @@ class MavlinkMap(BaseModel):
             if rule.fits(record):
                 yield rule, rule.number(rule.value, record)
 
-    def commands(self, record: Instruction) -> Iterator[tuple[int, list[float]]]:
-        """The commands that an instruction leads to, each with its seven parameters."""
+    def commands(self, record: Instruction) -> Iterator[tuple[str, int, int, list[float]]]:
+        """The commands that an instruction leads to: name, number, component, and the seven parameters."""
         for rule in self.command:
             if rule.fits(record):
                 numbers = [rule.number(value, record) for value in rule.params]
-                yield COMMANDS[rule.command], numbers + [0.0] * (PARAMS - len(numbers))
+                component = component_for(rule.command, rule.component, self.target_component)
+                yield rule.command, COMMANDS[rule.command], component, padded(numbers)
+
+
+def padded(params: list[float]) -> list[float]:
+    """All seven parameters of a command, those that are not given being 0."""
+    return params + [0.0] * (PARAMS - len(params))
+
+
+def component_for(command: str, *chosen: int | None) -> int:
+    """Whom a command is for: the first of `chosen` that is not None, else whoever such commands are for."""
+    usual = CAMERA_COMPONENT if command in CAMERA_COMMANDS else AUTOPILOT_COMPONENT
+    return next((component for component in chosen if component is not None), usual)
 
 
 def load_map(path: str) -> MavlinkMap:

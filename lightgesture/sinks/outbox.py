@@ -46,6 +46,9 @@ class Sink(ABC):
     """Whether a record that waited for long is still of use, as in a log. To a vehicle it is not: an instruction that
     arrives late may meet another situation."""
 
+    poll_s: float | None = None
+    """Seconds from one call of `poll` to the next while no record waits; None: it is not called."""
+
     def wants(self, record: Record) -> bool:  # noqa: ARG002 - all of them
         """Whether to send the record at all; called from any thread, quick."""
         return True
@@ -57,8 +60,15 @@ class Sink(ABC):
     def send(self, record: Record) -> None:
         """Send one record. SinkError, RecordError, SinkGoneError: as they say."""
 
+    def poll(self) -> None:  # noqa: B027 - likewise
+        """Do what time brings, such as reading an answer. SinkError: as it says."""
+
     def close(self) -> None:  # noqa: B027 - likewise
         """Give back what `open` took; also after a failed `open`, and twice."""
+
+
+class _Idle:
+    """Nothing came to be sent."""
 
 
 class Outbox:
@@ -133,7 +143,10 @@ class Outbox:
         try:
             self._sink.open()
             while (item := self._next()) is not None:
-                self._send(item)
+                if isinstance(item, _Idle):
+                    self._sink.poll()
+                else:
+                    self._send(item)
         except SinkError as error:
             self._sink.close()
             self._note_failure(f"{error}; trying again until it works")
@@ -141,8 +154,8 @@ class Outbox:
             return not self._is_stopping
         return False
 
-    def _next(self) -> tuple[float, Record] | None:
-        """The oldest record that is still of use, once there is one; None at the end."""
+    def _next(self) -> "tuple[float, Record] | _Idle | None":
+        """The oldest record that is still of use, once there is one; _Idle: none for `poll_s`; None: the end."""
         with self._changed:
             while True:
                 while self._queue and self._is_too_old(self._queue[0][0]):
@@ -152,7 +165,8 @@ class Outbox:
                     return self._queue.popleft()
                 if self._is_stopping:
                     return None
-                self._changed.wait()
+                if not self._changed.wait(self._sink.poll_s):
+                    return _Idle()
 
     def _send(self, item: tuple[float, Record]) -> None:
         try:

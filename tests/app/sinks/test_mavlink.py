@@ -10,8 +10,9 @@ from pymavlink.dialects.v20 import common
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.sinks import SinkError, make_sinks
-from lightgesture.sinks.mavlink import MavlinkSink, text_chunks
+from lightgesture.sinks.mavlink import MavlinkSink
 from lightgesture.sinks.mavlink_map import COMMANDS, MavlinkMap, load_map
+from lightgesture.sinks.mavlink_texts import text_chunks
 
 FORBIDDEN = (
     "ARM_DISARM",

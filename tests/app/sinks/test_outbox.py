@@ -23,6 +23,8 @@ def quick():
 class FakeSink:
     """Keeps what it is sent; raises what stands next in `opening` and `sending`, None being a success."""
 
+    poll_s = None
+
     def __init__(self, opening=(), sending=(), *, keeps_old=False):
         self.name = "fake"
         self.keeps_old = keeps_old

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Any, Final
 
-from pydantic import ValidationError
-
 from lightgesture.actions.live import run_live
 from lightgesture.config.opening import open_pipeline
 from lightgesture.config.options import explain
@@ -42,6 +40,8 @@ def refuse_useless(settings: DecodeSettings) -> None:
 
 def settings_with(settings: DecodeSettings, parameters: Mapping[str, Any]) -> DecodeSettings:
     """The options with what the parameters say; those that are None or empty say nothing. UsageError: one is wrong."""
+    from pydantic import ValidationError
+
     given = {name: value for name, value in parameters.items() if value is not None and value != ""}
     kept = settings.model_dump(exclude_unset=True, by_alias=True)
     for hold, other in (("hold", "hold_seconds"), ("hold_seconds", "hold")):

@@ -32,15 +32,15 @@ def test_the_launch_file_starts_the_node_with_its_parameters(monkeypatch):
         module("launch_ros.actions", Node=keep),
     ):
         monkeypatch.setitem(sys.modules, one.__name__, one)
-    *arguments, node = runpy.run_path(str(FOLDER / "lightgesture.launch.py"))["generate_launch_description"]()
+    *arguments, node = runpy.run_path(str(FOLDER / "node.launch.py"))["generate_launch_description"]()
     assert (node.executable, node.arguments[0] in COMMANDS) == ("lightgesture", True)
     assert dict(node.remappings) == {"image": "<image>", "image/compressed": "<image>"}
     defaults = {argument.words[0]: argument.default_value for argument in arguments}
-    assert Path(defaults["params"]) == FOLDER / "lightgesture.yaml"
+    assert Path(defaults["params"]) == FOLDER / "node.yaml"
 
 
 def test_the_parameters_are_options():
-    content = yaml.safe_load((FOLDER / "lightgesture.yaml").read_text("utf-8"))
+    content = yaml.safe_load((FOLDER / "node.yaml").read_text("utf-8"))
     parameters = content["/**"]["ros__parameters"]
     assert parameters.pop("raw") is False
     assert set(parameters) < set(parameter_names())

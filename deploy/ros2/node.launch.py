@@ -1,4 +1,4 @@
-"""Starts the node beside a camera: ros2 launch deploy/ros2/lightgesture.launch.py image:=/camera/image_raw/compressed
+"""Starts the node beside a camera: ros2 launch deploy/ros2/node.launch.py image:=/camera/image_raw/compressed
 
 Other arguments: namespace:=/rov, and params:=FILE.yaml with the node's parameters. For Image topics set `raw: true`
 there.
@@ -14,7 +14,7 @@ from launch_ros.actions import Node
 ARGUMENTS = {
     "image": ("/camera/image_raw/compressed", "topic with the pictures"),
     "namespace": ("", "of the node and its topics"),
-    "params": (str(Path(__file__).with_name("lightgesture.yaml")), "file with the node's parameters"),
+    "params": (str(Path(__file__).with_name("node.yaml")), "file with the node's parameters"),
 }
 
 

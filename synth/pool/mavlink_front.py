@@ -11,9 +11,11 @@ import math
 from collections.abc import Callable
 from typing import Any, Final
 
+from lightgesture.synth.pool import camera_component, follower
 from lightgesture.synth.pool.autopilot import Autopilot, Mode, Sticks
 from lightgesture.synth.pool.body import Motion
-from lightgesture.synth.pool.camera_component import NUMBER, CameraComponent
+from lightgesture.synth.pool.camera_component import CameraComponent
+from lightgesture.synth.pool.follower import Follower
 from lightgesture.synth.pool.mission_transfer import MissionTransfer
 from lightgesture.synth.pool.telling import Teller
 
@@ -48,7 +50,13 @@ class MavlinkFront:
         pilot.parameters["SYSID_THISMAV"] = float(system)
         self._packer = common.MAVLink(_Writer(write), system, AUTOPILOT)
         self._now_s = 0.0
-        self.camera = CameraComponent(common, common.MAVLink(_Writer(write), system, NUMBER))
+        writer = _Writer(write)
+        self.camera = CameraComponent(common, common.MAVLink(writer, system, camera_component.NUMBER))
+        self.follower = Follower(common, common.MAVLink(writer, system, follower.NUMBER), pilot)
+        self._components: dict[int, CameraComponent | Follower] = {
+            camera_component.NUMBER: self.camera,
+            follower.NUMBER: self.follower,
+        }
         self._teller = Teller(common, self._packer, pilot)
         self._missions = MissionTransfer(common, self._packer, pilot)
         pilot.take_pictures = lambda count, interval_s: self.camera.start(count, interval_s, self._now_s)
@@ -58,7 +66,8 @@ class MavlinkFront:
         self._now_s = now_s
         if self.is_deaf:
             return
-        self.camera.tick(now_s, motion)
+        for component in self._components.values():
+            component.tick(now_s, motion)
         if self._teller.tell(now_s, motion):
             self.camera.heartbeat()
 
@@ -110,11 +119,11 @@ class MavlinkFront:
         self.pilot.move_sticks(sticks)
 
     def _take_command(self, message: Any, params: tuple[float, ...]) -> None:
-        component = message.target_component
-        if component == NUMBER:
-            result, sender = self.camera.command(message.command, params, self._now_s), self.camera
-            self._acknowledge(message, message.command, result, sender)
-        elif component in (0, AUTOPILOT):
+        component = self._components.get(message.target_component)
+        if component is not None:
+            result = component.command(message.command, params, self._now_s)
+            self._acknowledge(message, message.command, result, component)
+        elif message.target_component in (0, AUTOPILOT):
             self._acknowledge(message, message.command, self._do(message.command, params))
 
     def _do(self, command: int, params: tuple[float, ...]) -> int:
@@ -164,7 +173,7 @@ class MavlinkFront:
         return int(dialect.MAV_RESULT_ACCEPTED if is_done else dialect.MAV_RESULT_FAILED)
 
     def _acknowledge(
-        self, message: Any, command: int, result: int, sender: CameraComponent | None = None
+        self, message: Any, command: int, result: int, sender: CameraComponent | Follower | None = None
     ) -> None:
         packer = self._packer if sender is None else sender.packer
         packer.command_ack_send(command, result, 0, 0, message.get_srcSystem(), message.get_srcComponent())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from lightgesture.sinks.mavlink import text_chunks
+from lightgesture.sinks.mavlink_texts import text_chunks
 from lightgesture.synth.pool.autopilot import Autopilot
 from lightgesture.synth.pool.body import Motion
 from lightgesture.synth.pool.mission import to_degrees

@@ -34,6 +34,10 @@ COMMANDS = {
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
     "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
+    "simulate": (
+        "lightgesture.synth.pool.command",
+        "a pool: diver, decoder, executor and vehicle; film and table",
+    ),
 }
 """Name of a command to its module and its line of help.
 

@@ -127,6 +127,10 @@ class Scene:
         )
         return SceneFrame(image, FrameRecord(source=None, frame=index, time_s=time_s, hands=hands))
 
+    def diver(self, index: int) -> DiverState:
+        """Where the diver of the script is in a frame, before a camera that stays."""
+        return self._performance.state(index, index / self.spec.fps)[0]
+
     def _draw_water_effects(
         self,
         picture: NDArray[np.float32],

@@ -117,6 +117,7 @@ class Autopilot:
         self.item = 0
         self.sticks = Sticks()
         self.said = Said()
+        self.visited: list[tuple[float, int]] = []  # items of the mission that were reached, and when
         self.take_pictures: Callable[[int, float], None] = _nothing
         self._controller = Controller(thrust_n)
         self._targets = Targets()
@@ -287,6 +288,7 @@ class Autopilot:
             self._hold(motion)
         if is_done:
             self.said.reached.append(self.item)
+            self.visited.append((now_s, self.item))
             self._waiting_until_s = None
             if self.item + 1 < len(self.mission):
                 self.item += 1

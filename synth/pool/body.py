@@ -121,6 +121,7 @@ def model_text(spec: BodySpec, diver_m: tuple[float, float, float]) -> str:
   <option timestep="{STEP_S}" integrator="implicitfast" density="1000" viscosity="0.001"
     wind="{spec.current_mps[0]} {-spec.current_mps[1]} 0"/>
   <visual><headlight ambient=".45 .45 .45" diffuse=".4 .4 .4"/><global offwidth="640" offheight="480"/>
+    <quality offsamples="0" shadowsize="0"/>
     <rgba fog=".05 .32 .42 1"/><map fogstart="4" fogend="14"/></visual>
   <asset>
     <texture name="tiles" type="2d" builtin="checker" rgb1=".25 .55 .62" rgb2=".2 .48 .56" width="64" height="64"/>
@@ -188,6 +189,10 @@ class Body:
             out_m = float(np.clip(self.data.qpos[2] / 0.1, 0.0, 1.0))
             self.model.body_gravcomp[:] = self._dry_gravity * (1.0 - out_m)
             self._mujoco.mj_step(self.model, self.data)
+
+    def place_diver(self, north_m: float, east_m: float, down_m: float) -> None:
+        """Put the figure of the diver, which touches nothing, to a place."""
+        self.data.mocap_pos[0] = (north_m, -east_m, -down_m)
 
     def motion(self) -> Motion:
         """Position, attitude and their rates now."""

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from lightgesture.features import find_hands
     from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
     from lightgesture.pipeline import Pipeline
-    from lightgesture.records import FrameRecord, Hand, HeartbeatRecord, Record, SummaryRecord
+    from lightgesture.records import FrameRecord, Hand, HeartbeatRecord, Record, SummaryRecord, VehicleRecord
 
 __all__ = [
     "FrameRecord",
@@ -22,13 +22,16 @@ __all__ = [
     "Rejected",
     "State",
     "SummaryRecord",
+    "VehicleRecord",
     "Word",
     "__version__",
     "find_hands",
 ]
 
 _PLACES = {
-    **dict.fromkeys(("FrameRecord", "Hand", "HeartbeatRecord", "Record", "SummaryRecord"), "records"),
+    **dict.fromkeys(
+        ("FrameRecord", "Hand", "HeartbeatRecord", "Record", "SummaryRecord", "VehicleRecord"), "records"
+    ),
     **dict.fromkeys(("Instruction", "Notice", "Rejected", "State", "Word"), "fsm"),
     "Pipeline": "pipeline",
     "find_hands": "features",

@@ -58,6 +58,7 @@ EXTRAS = {
     "mujoco": "sim",
     "pymavlink": "mavlink",
     "serial": "mavlink",
+    "gpiozero": "lamp",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

@@ -31,19 +31,19 @@ BELOW = {
 
 HEAVY = frozenset(
     {
-        *(
-            "av",
-            "dask",
-            "distributed",
-            "matplotlib",
-            "mujoco",
-            "pydantic",
-            "pymavlink",
-            "rclpy",
-            "rosbags",
-            "rospy",
-        ),
-        *("sklearn", "torch"),
+        "av",
+        "dask",
+        "distributed",
+        "gpiozero",
+        "matplotlib",
+        "mujoco",
+        "pydantic",
+        "pymavlink",
+        "rclpy",
+        "rosbags",
+        "rospy",
+        "sklearn",
+        "torch",
     }
 )
 """Libraries that only some uses need: imported in the function that uses them."""

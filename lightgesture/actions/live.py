@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from datetime import UTC, datetime, timedelta
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from lightgesture.config.opening import make_debug_pictures, open_stream
 from lightgesture.config.settings import DecodeSettings
@@ -15,10 +15,14 @@ from lightgesture.errors import ExitStatus
 from lightgesture.interruption import Stopping, stop_signals
 from lightgesture.live import Listener, LiveLoop, Mailbox, Reader, Report
 from lightgesture.live.loop import HEARTBEAT_S
+from lightgesture.records import VehicleRecord
 from lightgesture.results import JsonPrinter, TextPrinter
-from lightgesture.sinks import Outbox, Sink, make_sinks
+from lightgesture.sinks import Outbox, Sink, make_answers, make_sinks
 from lightgesture.sinks.printer import PrinterSink
 from lightgesture.sources import LiveSource, live_source, refuse_missing_device
+
+if TYPE_CHECKING:
+    from lightgesture.vehicle.runner import Runner
 
 DEBUG_STEM = "live"
 """Folder of the pictures of the stages, for an address makes no name."""
@@ -45,21 +49,20 @@ def run_live(
     if isinstance(source, str):
         refuse_missing_device(source)
         source = live_source(source, settings.source_options)
-    sinks = [_make_printer(settings, source.name), *make_sinks(settings)]
-    debug = make_debug_pictures(settings, DEBUG_STEM)
     report = _make_report()
     clock = _make_clock()
+
+    def tell(record: VehicleRecord) -> None:
+        loop.tell(record)
+
+    sinks = [_make_printer(settings, source.name), *make_sinks(settings, tell, clock)]
+    debug = make_debug_pictures(settings, DEBUG_STEM)
     mailbox = Mailbox()
     pipeline = open_stream(_for_pipeline(settings), source.name, debug, report)
     with ExitStack() as stack:
-        listeners = [*listeners, *_serving(settings, stack, report)]
         stopping = stack.enter_context(stop_signals())
-        outboxes = [Outbox(sink, report) for sink in sinks]
-        reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
-        parts: list[Outbox | Reader] = [*outboxes, reader]
-        for part in parts:
-            part.start()
-            stack.callback(part.stop)
+        runner = _obeying(settings, tell, report, clock, stopping)
+        outboxes = [Outbox(sink, report) for sink in (*sinks, *make_answers(settings, runner))]
         loop = LiveLoop(
             source.name,
             mailbox,
@@ -67,12 +70,18 @@ def run_live(
             outboxes,
             clock=clock,
             report=report,
-            listeners=listeners,
+            listeners=[*listeners, *_serving(settings, stack, report), *filter(None, [runner])],
             frames=settings.frames,
             debug=debug,
             heartbeat_s=heartbeat_s,
             start_utc=datetime.now(UTC) - timedelta(seconds=clock()),
         )
+        reader = Reader(source, mailbox, clock, report, give_up_s=settings.give_up)
+        # The last is ended first: a vehicle must not wait for what a sink still has to send.
+        parts: list[Outbox | Reader | Runner] = [*outboxes, reader, *filter(None, [runner])]
+        for part in parts:
+            part.start()
+            stack.callback(part.stop)
         loop.run(stopping)
     if not settings.quiet:
         say(f"{source.name}: {loop.processed} pictures decoded, {mailbox.dropped} passed over for newer ones")
@@ -89,13 +98,28 @@ def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     return settings.model_copy(update=changes)
 
 
+def _obeying(
+    settings: DecodeSettings,
+    tell: Callable[[VehicleRecord], None],
+    report: Report,
+    clock: Callable[[], float],
+    stopping: threading.Event,
+) -> "Runner | None":
+    """What carries the instructions out, where the user wants that."""
+    if settings.obey is None:
+        return None
+    from lightgesture.vehicle.opening import open_runner
+
+    return open_runner(settings, tell, report, clock, stopping)
+
+
 def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list[Listener]:
     """The page, where the user wants one, served until the stack ends."""
     if settings.web is None:
         return []
     from lightgesture.web import WebListener
 
-    page = stack.enter_context(WebListener(settings.web, settings.web_host))
+    page = stack.enter_context(WebListener(settings.web, settings.web_host, obeys=settings.obey is not None))
     if not settings.quiet:
         report(f"the page is at {page.address}")
     return [page]

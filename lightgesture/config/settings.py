@@ -39,6 +39,9 @@ STREAMS = (DECODE, LIVE)
 BUILT_IN_MODELS = ("cnn", "svm")
 """Names that `--model` knows; any other is the path of a file."""
 
+BUILT_IN_VEHICLES = ("ardusub", "manual")
+"""Likewise profiles that `--obey` knows."""
+
 
 def _option(
     default: Any,
@@ -220,6 +223,30 @@ class DecodeSettings(BaseModel):
         kind="path",
         only=(LIVE,),
     )
+    mavlink_system: int | None = _option(
+        None,
+        "number of the vehicle on the MAVLink links, 1 to 255 (default: that of the one autopilot that is heard)",
+        "N",
+        only=(LIVE,),
+        ge=1,
+        le=255,
+    )
+    obey: str | None = _option(
+        None,
+        "carry the instructions out on the vehicle of the first --mavlink, as this profile says: ardusub, manual or a"
+        " file (default: nothing is carried out)",
+        "FILE",
+        kind="path",
+        only=(LIVE,),
+        min_length=1,
+    )
+    answer: list[str] = _option(
+        [],
+        "answer the diver: by a lamp, lamp:GREEN,ORANGE,RED (pins, BCM numbers), or by the vehicle's motion, motion"
+        " (repeatable)",
+        "SINK",
+        only=(LIVE,),
+    )
     hook: list[str] = _option(
         [],
         "run a command for each instruction, its record as JSON on standard input (repeatable)",
@@ -284,6 +311,10 @@ NO_INFLUENCE = _fields_with("changes_results", False)
 
 
 def change_paths(values: Mapping[str, Any], change: Callable[[str], str]) -> dict[str, str]:
-    """The paths among the values of options, each as `change` makes it; names of built-in models are none."""
+    """The paths among the values of options, each as `change` makes it; names of what is built in are none."""
     given = {name: values.get(name) for name in PATH_OPTIONS}
-    return {name: change(path) for name, path in given.items() if path and path not in BUILT_IN_MODELS}
+    return {
+        name: change(path)
+        for name, path in given.items()
+        if path and path not in (*BUILT_IN_MODELS, *BUILT_IN_VEHICLES)
+    }

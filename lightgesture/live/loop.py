@@ -15,7 +15,14 @@ from lightgesture.errors import InputError
 from lightgesture.fsm import State
 from lightgesture.live.reader import Mailbox, Report, Snapshot
 from lightgesture.pipeline import Pipeline
-from lightgesture.records import FrameRecord, HeartbeatRecord, Record, SummaryRecord, utc_text
+from lightgesture.records import (
+    FrameRecord,
+    HeartbeatRecord,
+    Record,
+    SummaryRecord,
+    VehicleRecord,
+    utc_text,
+)
 from lightgesture.results import DebugPictures
 from lightgesture.sources import to_image
 from lightgesture.watch import Watch
@@ -47,7 +54,8 @@ class Listener(Protocol):
     """Is shown every processed picture; a page for a browser is one."""
 
     def show(self, image_bgr: NDArray[np.uint8] | None, records: Sequence[Record]) -> None:
-        """Take note of a picture and its records, at once: the decoder waits for this call.
+        """Take note of a picture and its records, at once: the decoder waits for this call. `vehicle` records come
+        from another thread than the rest.
 
         image_bgr: uint8 (height, width, 3), BGR; it may be kept, but not changed. None for records that belong to no
         picture: heartbeats, and at the end what was pending and the summary. records: the frame record first, given
@@ -109,6 +117,11 @@ class LiveLoop:
                 # After a stall one beat makes up for those that were missed.
                 beat_s = max(beat_s + self._heartbeat_s, now_s)
         self._publish(None, self._finish())
+
+    def tell(self, record: VehicleRecord) -> None:
+        """Publish what a vehicle did; from any thread, also while a picture is decoded."""
+        utc = utc_text(self._start_utc, record.time_s)
+        self._publish(None, [replace(record, source=self._source, utc=utc)])
 
     @property
     def processed(self) -> int:

@@ -16,7 +16,7 @@ from lightgesture.features.image import as_bgr8
 from lightgesture.features.types import Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand, Record
+from lightgesture.records import FrameRecord, Hand, Record, VehicleRecord
 
 _Colour = tuple[int, int, int]
 
@@ -104,6 +104,8 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
                 state = _say(state, "rejected: " + record.text, record.detail, _RED)
             case Notice():
                 state = _notice(state, record.detail)
+            case VehicleRecord():
+                state = _say_of_vehicle(state, record)
             case _:
                 pass
     message = state.message
@@ -129,6 +131,12 @@ def render(image_bgr: Image, state: OverlayState) -> Image:
 def _say(state: OverlayState, text: str, detail: str, colour: _Colour) -> OverlayState:
     message = Message(one_line(text), one_line(detail), colour, state.time_s + MESSAGE_S, is_notice=False)
     return replace(state, message=message)
+
+
+def _say_of_vehicle(state: OverlayState, record: VehicleRecord) -> OverlayState:
+    colour = _RED if record.state in ("refused", "aborted") else _GREEN
+    what = " ".join(filter(None, (record.state, record.instruction)))
+    return _say(state, f"vehicle: {what}", record.detail, colour)
 
 
 def _notice(state: OverlayState, detail: str) -> OverlayState:

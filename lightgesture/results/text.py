@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from lightgesture.console import one_line
 from lightgesture.fsm import Instruction, Notice, Rejected
-from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord
+from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord, VehicleRecord
 
 _REASONS = {
     "low_confidence": "too unsure to tell",
@@ -41,6 +41,9 @@ def describe(record: Record) -> str | None:
             return _timed(record.time_s, f"rejected: {record.text}  ({record.detail})")
         case Notice():
             return _timed(record.time_s, f"notice: {record.detail}")
+        case VehicleRecord():
+            what = " ".join(filter(None, (record.state, record.instruction)))
+            return _timed(record.time_s, f"vehicle: {what}  ({record.detail})")
         case SummaryRecord():
             return _summary(record)
         case _:

@@ -62,9 +62,9 @@ def _serve(node: "GestureNode") -> ExitStatus:
             while not stopping.is_set() and not node.is_shut_down and node.run is None:
                 node.changed.wait(SPIN_S)
                 node.changed.clear()
-            if stopping.is_set() or node.is_shut_down:
-                return ExitStatus.INTERRUPTED if stopping.is_interrupted else status
             run = node.run
+            if run is None or stopping.is_set() or node.is_shut_down:
+                return ExitStatus.INTERRUPTED if stopping.is_interrupted else status
         status = run_topic(run.settings, run.source, node.wire)
         node.note_end(run)
         # A run that nobody ended by a transition was ended by a signal, or by itself for a reason that was told.

@@ -24,12 +24,12 @@ class HookSink(Sink):
 
     Its standard output goes nowhere, for ours belongs to the records; its standard error is ours. A command that
     fails is reported and not repeated, since it may have done half of its work.
-    UsageError when made: there is no such command.
+    place: where it was named, for messages. UsageError when made: there is no such command.
     """
 
-    def __init__(self, command: str) -> None:
+    def __init__(self, command: str, place: str = "--hook") -> None:
         self.name = f"hook {command}"
-        self._words = _split(command)
+        self._words = _split(command, place)
 
     def wants(self, record: Record) -> bool:
         """Accepted instructions only."""
@@ -73,13 +73,13 @@ def _talk(process: "subprocess.Popen[bytes]", line: bytes) -> None:
         raise
 
 
-def _split(command: str) -> list[str]:
+def _split(command: str, place: str) -> list[str]:
     try:
         words = shlex.split(command)
     except ValueError as error:
         raise UsageError(
-            f"--hook {command}: cannot be split into words ({error}); close the quotes"
+            f"{place} {command}: cannot be split into words ({error}); close the quotes"
         ) from None
     if not words or shutil.which(words[0]) is None:
-        raise UsageError(f"--hook {command}: no such command; name a program that can be run")
+        raise UsageError(f"{place} {command}: no such command; name a program that can be run")
     return words

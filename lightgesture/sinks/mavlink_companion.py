@@ -57,17 +57,17 @@ class Companion:
         for job, name, record in self._jobs:
             job.poll(now_s)
             if job.is_done:
-                self._report(job, name, record)
+                self._report(job, name, record, now_s)
         self._jobs = [item for item in self._jobs if not item[0].is_done]
 
-    def _report(self, job: CommandJob, name: str, record: Instruction) -> None:
+    def _report(self, job: CommandJob, name: str, record: Instruction, now_s: float) -> None:
         if self._tell is None:
             return
         is_accepted = job.reply.state == "accepted"
         detail = name if is_accepted else f"{name}: {job.reply.detail}"
         self._tell(
             VehicleRecord(
-                time_s=record.time_s,
+                time_s=round(now_s, 3),
                 state="accepted" if is_accepted else "refused",
                 instruction=record.text,
                 detail=detail,

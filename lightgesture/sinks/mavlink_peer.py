@@ -69,22 +69,19 @@ class Peer:
         if component != self.target or not self._is_vehicle(message, system):
             return
         self._seen[system] = now_s
-        self._forget(now_s)
-        if self._told is None and len(self._seen) == 1:
-            self._learnt = system
+        self.poll(now_s)
         if system == self.system:
             self.heard = Heard(now_s, message.custom_mode, bool(message.base_mode & 128))
 
     def poll(self, now_s: float) -> None:
-        """Let time pass."""
-        self._forget(now_s)
+        """Let time pass: who is silent is forgotten, and who is left alone is the vehicle."""
+        self._seen = {
+            system: seen_s for system, seen_s in self._seen.items() if now_s - seen_s <= self._timeout_s
+        }
+        if len(self._seen) == 1:
+            (self._learnt,) = self._seen
 
     def _is_vehicle(self, message: Any, system: int) -> bool:
         if self._told is not None:
             return system == self._told
         return bool(message.type != _GROUND_STATION and message.autopilot != _NO_AUTOPILOT)
-
-    def _forget(self, now_s: float) -> None:
-        self._seen = {
-            system: seen_s for system, seen_s in self._seen.items() if now_s - seen_s <= self._timeout_s
-        }

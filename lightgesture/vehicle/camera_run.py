@@ -3,6 +3,7 @@
 from concurrent.futures import Future
 from datetime import UTC, datetime
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import Final
 
@@ -137,7 +138,9 @@ def _write(folder: Path, image: Image, moment: datetime) -> str:
 
     from lightgesture.results.atomic import replacing
 
-    path = folder / (moment.strftime("%Y%m%dT%H%M%S.") + f"{moment.microsecond // 1000:03d}Z.jpg")
+    stem = moment.strftime("%Y%m%dT%H%M%S.") + f"{moment.microsecond // 1000:03d}Z"
+    names = (stem if number == 0 else f"{stem}_{number}" for number in count())
+    path = next(path for name in names if not (path := folder / f"{name}.jpg").exists())
     with replacing(path) as temporary:
         temporary.write_bytes(cv2.imencode(".jpg", image)[1].tobytes())
     return str(path)

@@ -99,7 +99,8 @@ class Executor:
 
     def answer(self, word: Word) -> None:
         """Have the vehicle nod or shake, where nothing stands against it; called in the thread of `tick`."""
-        self._motion.ask(word)
+        if self._task is None:
+            self._motion.ask(word)
 
     def tick(self, now_s: float) -> None:
         """Do what is to be done at `now_s`."""
@@ -117,6 +118,10 @@ class Executor:
             self._obey(record, senses, now_s)
         self._advance(senses, now_s)
         self._sticks.tick(now_s, self._bench.status.stick_s)
+
+    def settle(self, now_s: float) -> None:
+        """After `close`: repeat the middle of the sticks where it is time, for one message may get lost."""
+        self._sticks.tick(now_s)
 
     def close(self, reason: str, now_s: float | None = None) -> None:
         """Sticks to the middle, everything ended, at once."""
@@ -154,6 +159,7 @@ class Executor:
         # The diver said that what is done shall end, whatever becomes of the rest.
         goes_on = self.goes_on
         self._stop(Fault(f"replaced by {record.text}"), now_s, is_held=False)
+        self._motion.is_allowed = True
         if not isinstance(plan, str) and reason is None and not self._must_wait(plan):
             self._begin(plan, now_s)
             return
@@ -211,6 +217,7 @@ class Executor:
     def _stop(self, found: Fault, now_s: float, is_held: bool = True) -> None:
         """Break the task off, and what waits for its turn; is_held: hold the vehicle where it would go on by itself."""
         self._motion.stop(now_s)
+        self._motion.is_allowed = False
         if self._waiting is not None:
             self._say("aborted", self._waiting.record.text, found.reason)
         goes_on, task = self.goes_on, self._task

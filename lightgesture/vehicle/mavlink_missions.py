@@ -64,9 +64,8 @@ class MissionJob(Job):
     def __init__(self, talk: Talk, order: StartMission, numbers: Mapping[str, int], mode: int | None) -> None:
         super().__init__(talk)
         self._order = order
-        self._count = _CountJob(talk)
-        self._current = _CurrentJob(talk, order.first)
         self.mode = ModeJob(talk, SetMode(names=(order.mode,)), numbers, mode)
+        self._parts: list[Job] = [_CountJob(talk), _CurrentJob(talk, order.first), self.mode]
         self._last = order.first
 
     @property
@@ -75,24 +74,26 @@ class MissionJob(Job):
 
     def note(self, message: Any, now_s: float) -> None:
         """Hand on."""
-        for job in (self._count, self._current, self.mode):
+        for job in self._parts:
             job.note(message, now_s)
 
     def poll(self, now_s: float) -> None:
         """Go on with the part that is not done."""
         while not self.is_done:
-            job = next((part for part in (self._count, self._current, self.mode) if not part.is_done), None)
-            if job is None:
+            if not self._parts:
                 self.reply.accept(value=float(self._last))
                 return
+            job = self._parts[0]
             job.poll(now_s)
             if job.reply.state == "refused":
                 what = "the mode" if job is self.mode else "the mission"
                 self.reply.refuse(f"{what}: {job.reply.detail}")
             elif not job.is_done:
                 return
-            elif job is self._count:
-                self._check_count(int(job.reply.value or 0))
+            else:
+                self._parts.pop(0)
+                if job.reply.value is not None:
+                    self._check_count(int(job.reply.value))
 
     def _check_count(self, count: int) -> None:
         last = count - 1 if self._order.last is None else self._order.last

@@ -23,16 +23,20 @@ def swing(table: MotionTable, word: Word, elapsed_s: float, ramp_s: float, cap: 
 
 
 class Motion:
-    """Moves the vehicle for an answer, under the same guard as any task."""
+    """Moves the vehicle for an answer, under the same guard as any task.
+
+    is_allowed: not after something was broken off, before the next instruction: who wanted it still wants no motion.
+    """
 
     def __init__(self, bench: Bench) -> None:
         self._bench = bench
         self._word: Word | None = None
         self._begun: tuple[Status, float] | None = None
+        self.is_allowed = True
 
     def ask(self, word: Word) -> None:
         """Answer at the next tick, if that may be; a profile without `[motion]` has no answer."""
-        if self._bench.profile.motion is not None and self._word is None:
+        if self.is_allowed and self._bench.profile.motion is not None and self._word is None:
             self._word = word
 
     def tick(self, senses: Senses, now_s: float) -> None:

@@ -137,15 +137,13 @@ class WaitRun(Run):
         self._total_s: float | None = seconds_of(step.wait, step.missing, record)
         self._until_s: float | None = None
 
-    def begin(self, bench: Bench, now_s: float) -> None:
+    def begin(self, bench: Bench, now_s: float) -> None:  # noqa: ARG002 - those of its base
         """The time begins."""
-        mode = bench.status.mode
-        inside = f"in {mode} " if mode else ""
         if self._total_s is None:
-            self.detail = f"stays {inside}until the next instruction"
+            self.detail = "stays until the next instruction"
         else:
             self._until_s = now_s + self._total_s
-            self.detail = f"stays {inside}for {self._total_s:g} s"
+            self.detail = f"stays for {self._total_s:g} s"
 
     def tick(self, bench: Bench, now_s: float) -> Outcome:  # noqa: ARG002 - those of its base
         """Until it is over."""

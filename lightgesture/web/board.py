@@ -15,8 +15,9 @@ from typing import Any, Final
 
 from lightgesture.features.types import Image
 from lightgesture.records import Record
+from lightgesture.sinks.answers import SHOWN_S, Mood, advance
 
-ENTRIES = ("instruction", "rejected", "notice")
+ENTRIES = ("instruction", "rejected", "notice", "vehicle")
 """Types of records that are listed."""
 
 
@@ -57,10 +58,12 @@ class Update:
 class Board:
     """The shared state; every method may be called from any thread.
 
-    run: names this run, since numbers begin again in the next.
+    run: names this run, since numbers begin again in the next. obeys: whether a vehicle says what becomes of
+    instructions.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, obeys: bool = False) -> None:
+        self._mood, self._obeys = Mood(), obeys
         self.run = uuid.uuid4().hex[:12]
         self._changed = threading.Condition()
         self._entries: deque[dict[str, Any]] = deque(maxlen=ENTRIES_KEPT)
@@ -101,6 +104,7 @@ class Board:
                 self._picture_at = time.monotonic()
                 self._undrawn.extend(records)
             for record in records:
+                self._mood = advance(self._mood, record, time.monotonic(), self._obeys)
                 self._note(record.to_dict())
             self._version += 1
             self._changed.notify_all()
@@ -115,7 +119,7 @@ class Board:
             if self._is_closed or self._version <= version:
                 return None
             age = None if self._picture_at is None else round(time.monotonic() - self._picture_at, 1)
-            state = {**self._state, "run": self.run, "picture_age_s": age}
+            state = {**self._state, "run": self.run, "picture_age_s": age, **self._shown_answer()}
             return Update(self._version, state, [item for item in self._entries if item["number"] > entry])
 
     @contextmanager
@@ -163,6 +167,14 @@ class Board:
 
     def _is_wanted(self) -> bool:
         return self._viewers > 0 and self._picture_number > self._jpeg_number
+
+    def _shown_answer(self) -> dict[str, Any]:
+        """What the diver is told: the last answer with its age and the seconds for which it is shown, and what is
+        done."""
+        answer, tasks = self._mood.answer, sorted(self._mood.tasks)
+        age_s = round(time.monotonic() - self._mood.since_s, 2)
+        shown = {"answer": answer.value, "age_s": age_s, "shown_s": SHOWN_S[answer]} if answer else None
+        return {"answer": shown, "tasks": tasks}
 
     def _note(self, record: dict[str, Any]) -> None:
         kind = record["type"]

@@ -36,14 +36,17 @@ Draw = Callable[[Image, Sequence[Record]], Image]
 class WebListener:
     """Serves the page; use it in a `with` block, or `start` and `stop` it.
 
-    port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
-    draw: what makes the annotated picture. `show` never waits for a browser, and draws nothing itself.
+    port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look. draw:
+    what makes the annotated picture. obeys: whether a vehicle says what becomes of instructions. `show` never waits
+    for a browser, and draws nothing itself.
     """
 
-    def __init__(self, port: int, host: str = LOOPBACK, draw: Draw | None = None) -> None:
+    def __init__(
+        self, port: int, host: str = LOOPBACK, draw: Draw | None = None, obeys: bool = False
+    ) -> None:
         self._port, self._host = port, host
         self._draw = draw or Overlay().draw
-        self._board = Board()
+        self._board = Board(obeys)
         self._server: WebServer | None = None
         self._threads: list[threading.Thread] = []
 

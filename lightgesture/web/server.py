@@ -23,6 +23,9 @@ PAGES = {
     "/": ("page.html", "text/html; charset=utf-8"),
     "/page.css": ("page.css", "text/css; charset=utf-8"),
     "/page.js": ("page.js", "text/javascript; charset=utf-8"),
+    "/display": ("display.html", "text/html; charset=utf-8"),
+    "/display.css": ("display.css", "text/css; charset=utf-8"),
+    "/display.js": ("display.js", "text/javascript; charset=utf-8"),
     "/icon.svg": ("icon.svg", "image/svg+xml"),
 }
 """Path to the file in `static` and its type."""

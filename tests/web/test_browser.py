@@ -103,3 +103,23 @@ def test_a_new_instruction_comes_first_and_the_sentence_goes(page):
     assert page.text_content("li:first-child strong") == "CONTD"
     wait_for(page, "document.getElementById('sentence').textContent === 'none'")
     assert page.text_content("#link") == "idle"
+
+
+@pytest.mark.parametrize("page", [128], indirect=True)
+def test_the_display_for_the_diver(page):
+    listener, _, opened = page
+    opened.set_viewport_size({"width": 128, "height": 64})
+    opened.goto(listener.address + "display", wait_until="commit")
+    wait_for(opened, "document.body.dataset.mood !== 'lost'")
+    listener.show(None, RECORDS[-1:])
+    wait_for(opened, "document.body.dataset.mood === 'refused'")
+    assert opened.inner_text("#word") == "NO"
+    assert (
+        opened.evaluate("document.documentElement.scrollWidth <= 128 && document.title")
+        == "lightgesture display"
+    )
+    wait_for(opened, "document.body.dataset.mood === 'busy'")  # the answer is over
+    listener.show(None, [State(state="collecting", sentence="STOP HOVER 5", dwell=None, **AT)])
+    wait_for(opened, "document.getElementById('word').textContent === 'STOP HOVER 5'")
+    box = opened.locator("#word").bounding_box()
+    assert 0 <= box["y"] < box["y"] + box["height"] <= 64

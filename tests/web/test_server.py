@@ -13,7 +13,7 @@ import pytest
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand, SummaryRecord
+from lightgesture.records import FrameRecord, Hand, SummaryRecord, VehicleRecord
 from lightgesture.web import WebListener, board, listener, server
 
 AT = {"source": "dive.mp4", "frame": 3, "time_s": 0.1}
@@ -136,6 +136,9 @@ def test_the_page_and_what_belongs_to_it(serve):
         ("/?again", "text/html", b"<main>"),
         ("/page.css", "text/css", b"grid"),
         ("/page.js", "text/javascript", b"EventSource"),
+        ("/display", "text/html", b"<main"),
+        ("/display.css", "text/css", b"128"),
+        ("/display.js", "text/javascript", b"EventSource"),
         ("/icon.svg", "image/svg+xml", b"<svg"),
     ):
         status, headers, body = get(listener, path)
@@ -148,13 +151,14 @@ def test_the_page_and_what_belongs_to_it(serve):
         assert headers["Cross-Origin-Resource-Policy"] == "same-origin"
 
 
-def test_the_page_has_no_code_of_its_own(serve):
-    body = get(serve())[2].decode()
+@pytest.mark.parametrize(("path", "code"), [("/", "/page.js"), ("/display", "/display.js")])
+def test_the_page_has_no_code_of_its_own(serve, path, code):
+    body = get(serve(), path)[2].decode()
     assert "<style" not in body
     assert " on" not in body.replace(" one", "")
     assert "http" not in body.replace("http-equiv", "")
-    assert body.count("<script") == body.count('<script src="/page.js"') == 1
-    script = get(serve(), "/page.js")[2].decode()
+    assert body.count("<script") == body.count(f'<script src="{code}"') == 1
+    script = get(serve(), code)[2].decode()
     assert not any(
         word in script for word in ("innerHTML", "outerHTML", "insertAdjacentHTML", "document.write")
     )
@@ -205,6 +209,25 @@ def test_state_and_entries(serve):
         ("instruction", 1),
         ("rejected", 2),
     ]
+
+
+def test_what_the_diver_is_told(serve):
+    page = WebListener(0, obeys=True)
+    page.start()
+    page.show(None, [instruction(), vehicle("sent"), vehicle("accepted")])
+    state = json.loads(get(page, "/state.json")[2])
+    assert state["tasks"] == ["STOP HOVER GO"]
+    assert state["answer"]["answer"] == "accepted"
+    assert 0 <= state["answer"]["age_s"] < state["answer"]["shown_s"] == 1.5
+    page.show(None, [vehicle("refused")])
+    state = json.loads(get(page, "/state.json")[2])
+    assert (state["tasks"], state["answer"]["answer"]) == ([], "refused")
+    assert [entry.get("detail") for entry in state["entries"]] == [None, "why", "why", "why"]
+    page.stop()
+
+
+def vehicle(state):
+    return VehicleRecord(time_s=1.0, state=state, instruction="STOP HOVER GO", detail="why")
 
 
 def test_heartbeats_and_the_end_come_without_a_picture(serve):

@@ -41,6 +41,7 @@ function showState(state) {
   if (state.frames !== undefined) numbers.push(state.frames + " pictures decoded", state.dropped + " passed over",
     state.ms_per_frame.toFixed(1) + " ms a picture");
   put("numbers", numbers.join(", "));
+  put("tasks", state.tasks.length ? "under way: " + state.tasks.join(", ") : "");
   if (state.ended !== null) tell("the stream has ended (" + state.ended + ")", "bad");
   else if (state.picture_age_s === null) tell("no picture yet", "bad");
   else if (state.picture_age_s > 2) tell("no picture for " + Math.round(state.picture_age_s) + " s", "bad");
@@ -57,13 +58,15 @@ function showEntry(entry) {
   if (document.querySelector('[data-number="' + Number(entry.number) + '"]')) return;
   const item = document.createElement("li");
   item.className = entry.type;
+  if (entry.state === "refused" || entry.state === "aborted") item.classList.add("rejected");
   item.dataset.number = Number(entry.number);
   const clock = new Date(entry.wall_s * 1000).toLocaleTimeString([], { hour12: false });
-  const kind = { instruction: "accepted", rejected: "rejected", notice: "notice" }[entry.type];
-  item.append(line("strong", entry.text ?? entry.detail));
+  const kind = { instruction: "accepted", rejected: "rejected", notice: "notice", vehicle: "vehicle" }[entry.type];
+  const said = entry.type === "vehicle" ? entry.state + " " + (entry.instruction ?? "") : entry.text;
+  item.append(line("strong", said ?? entry.detail));
   const more = [clock, kind];
   if (entry.type === "instruction") more.push("confidence " + entry.confidence.toFixed(2));
-  if (entry.type === "rejected") more.push(entry.detail);
+  if (entry.type === "rejected" || entry.type === "vehicle") more.push(entry.detail);
   item.append(line("span", more.join(" · ")));
   at("entries").prepend(item);
   while (at("entries").childElementCount > MOST_ENTRIES) at("entries").lastElementChild.remove();

@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import common
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
+from lightgesture.fsm import Rejected
 from lightgesture.sinks import SinkError, make_sinks
 from lightgesture.sinks.mavlink import MavlinkSink
 from lightgesture.sinks.mavlink_map import COMMANDS, MavlinkMap, load_map
@@ -271,3 +272,93 @@ def test_without_the_extra(monkeypatch):
 
 def test_a_map_of_nothing_sends_nothing(instruction):
     assert list(MavlinkMap().values(instruction())) == list(MavlinkMap().commands(instruction())) == []
+
+
+@pytest.fixture
+def sink_with_map(station, mapping):
+    """A sink on a clock that a test winds, and what it told of the vehicle's answers."""
+    now, told = [100.0], []
+    sink = MavlinkSink(station.link, mapping, tell=told.append, clock=lambda: now[0])
+    sink.open()
+    yield sink, now, told
+    sink.close()
+
+
+def test_refusals_of_the_maps_commands_are_told(station, instruction, sink_with_map):
+    sink, now, told = sink_with_map
+    sink.send(instruction(action="SNAP", text="CONTD SNAP GO"))
+    _, address = station.socket.recvfrom(65536)  # the text
+    for _ in range(2):
+        now[0] += 0.8
+        sink.poll()
+    sent = [message for message in station.messages() if message.get_type() == "COMMAND_LONG"]
+    assert [message.confirmation for message in sent] == [0, 1, 2]
+    refusal = common.MAVLink_command_ack_message(2000, 3, 0, 0, 7, 191)
+    station.socket.sendto(refusal.pack(common.MAVLink(None, 7, 2)), address)
+    time.sleep(0.05)
+    sink.poll()
+    (record,) = told
+    assert (record.state, record.instruction, record.detail) == (
+        "refused",
+        "CONTD SNAP GO",
+        "MAV_CMD_IMAGE_START_CAPTURE: unsupported",
+    )
+    assert record.time_s == now[0]
+    sink.send(record)
+    text = station.messages()[-2:]
+    assert "".join(message.text for message in text if message.get_type() == "STATUSTEXT").startswith(
+        "Vehicle: refused CONTD SNAP GO"
+    )
+
+
+def test_commands_that_nobody_answers_are_told(station, instruction, sink_with_map):
+    sink, now, told = sink_with_map
+    sink.send(instruction(action="EXEC", program=2, text="STOP EXEC 2 GO"))
+    for _ in range(6):
+        now[0] += 0.8
+        sink.poll()
+    assert [(record.state, record.detail) for record in told] == [
+        ("refused", "MAV_CMD_USER_1: no answer to 4 tries")
+    ]
+
+
+def test_rejections_are_texts_a_few_at_a_time(station, instruction, sink_with_map):
+    sink, now, _ = sink_with_map
+    rejection = Rejected(source="cam", frame=1, time_s=1.0, reason="limit", text="STOP GO", detail="why")
+    for _ in range(10):
+        sink.send(rejection)
+        now[0] += 0.5
+    sink.send(instruction(action="LEFT", text="STOP LEFT GO"))
+    texts = [message.text for message in station.messages() if message.get_type() == "STATUSTEXT"]
+    assert texts == ["Diver: rejected: STOP GO (why)"] * 3 + ["Diver: STOP LEFT GO"]
+
+
+def test_the_vehicles_number_is_learnt(station, heartbeat, instruction):
+    sink = MavlinkSink(station.link)
+    sink.open()
+    sink.send(heartbeat())
+    _, address = station.socket.recvfrom(65536)
+    beat = common.MAVLink_heartbeat_message(12, 3, 0, 0, 4, 3)
+    station.socket.sendto(beat.pack(common.MAVLink(None, 42, 1)), address)
+    time.sleep(0.05)
+    sink.send(heartbeat())
+    assert [message.get_srcSystem() for message in station.messages()] == [42]
+    sink.close()
+
+
+def test_commands_for_cameras_go_to_the_camera(tmp_path, station, instruction):
+    path = tmp_path / "map.toml"
+    path.write_text(
+        '[[command]]\naction = "SNAP"\ncommand = "MAV_CMD_IMAGE_START_CAPTURE"\n'
+        '[[command]]\naction = "SNAP"\ncommand = "MAV_CMD_USER_1"\n'
+        '[[command]]\naction = "SNAP"\ncommand = "MAV_CMD_USER_2"\ncomponent = 55\n'
+    )
+    send(station.link, instruction(action="SNAP"), mapping=load_map(str(path)))
+    sent = [message for message in station.messages() if message.get_type() == "COMMAND_LONG"]
+    assert [message.target_component for message in sent] == [100, 1, 55]
+    assert {message.target_system for message in sent} == {1}
+
+
+def test_a_number_without_a_link():
+    with pytest.raises(UsageError, match="--mavlink-system: is of no use without --mavlink"):
+        make_sinks(DecodeSettings(mavlink_system=2))

@@ -119,7 +119,9 @@ def _serving(settings: DecodeSettings, stack: ExitStack, report: Report) -> list
         return []
     from lightgesture.web import WebListener
 
-    page = stack.enter_context(WebListener(settings.web, settings.web_host, obeys=settings.obey is not None))
+    obeys, is_extension = settings.obey is not None, settings.web_blueos
+    listener = WebListener(settings.web, settings.web_host, obeys=obeys, is_extension=is_extension)
+    page = stack.enter_context(listener)
     if not settings.quiet:
         report(f"the page is at {page.address}")
     return [page]

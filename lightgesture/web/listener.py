@@ -37,14 +37,19 @@ class WebListener:
     """Serves the page; use it in a `with` block, or `start` and `stop` it.
 
     port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look. draw:
-    what makes the annotated picture. obeys: whether a vehicle says what becomes of instructions. `show` never waits
-    for a browser, and draws nothing itself.
+    what makes the annotated picture. obeys: whether a vehicle says what becomes of instructions. is_extension: of
+    BlueOS, see `WebServer`. `show` never waits for a browser, and draws nothing itself.
     """
 
     def __init__(
-        self, port: int, host: str = LOOPBACK, draw: Draw | None = None, obeys: bool = False
+        self,
+        port: int,
+        host: str = LOOPBACK,
+        draw: Draw | None = None,
+        obeys: bool = False,
+        is_extension: bool = False,
     ) -> None:
-        self._port, self._host = port, host
+        self._port, self._host, self._is_extension = port, host, is_extension
         self._draw = draw or Overlay().draw
         self._board = Board(obeys)
         self._server: WebServer | None = None
@@ -73,7 +78,7 @@ class WebListener:
     def start(self) -> None:
         """Begin to serve. UsageError: the address cannot be had."""
         try:
-            self._server = WebServer(self._host, self._port, self._board)
+            self._server = WebServer(self._host, self._port, self._board, self._is_extension)
         except OSError as error:
             raise UsageError(
                 f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"

@@ -112,7 +112,8 @@ def compose(drawn: Image, outside: Image, title: str, seen: Seen) -> Image:
     canvas[: _VIEW[1], _VIEW[0] :] = outside
     now = seen.moments[-1]
     _text(canvas, title, (14, 506), 0.55, _LIGHT)
-    state = f"{now.time_s:5.1f} s   {now.mode.name}   {now.motion.depth_m:.2f} m   {now.motion.heading_deg:.0f} deg"
+    heading = round(now.motion.heading_deg) % 360
+    state = f"{now.time_s:5.1f} s   {now.mode.name}   {now.motion.depth_m:.2f} m   {heading} deg"
     _text(canvas, f"{state}   {now.pictures} pictures", (14, 532), 0.55, _LIGHT)
     for row, record in enumerate(seen.said[-6:]):
         words = f"{record.time_s:5.1f}  {record.state}: {record.detail or record.instruction}"

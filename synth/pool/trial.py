@@ -16,6 +16,7 @@ from lightgesture.records import HeartbeatRecord, Record, VehicleRecord
 from lightgesture.synth.diver import DiverState
 from lightgesture.synth.pool.autopilot import Mode
 from lightgesture.synth.pool.body import BodySpec, Motion
+from lightgesture.synth.pool.controller import CONTROL_S
 from lightgesture.synth.pool.link import PoolLink
 from lightgesture.synth.pool.plans import Plan
 from lightgesture.synth.pool.vehicle import START_DEPTH_M, Vehicle
@@ -149,7 +150,7 @@ class Trial:
 
     def _advance(self, until_s: float) -> None:
         """Let the vehicle go on, with a look of the executor each TICK_S."""
-        while self._clock() < until_s - 1e-6:
+        while self._clock() < until_s - 0.5 * CONTROL_S:
             self._vehicle.advance(min(until_s, self._clock() + TICK_S))
             now_s = self._clock()
             self._link.set_time(now_s)

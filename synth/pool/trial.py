@@ -128,7 +128,9 @@ class Trial:
                 end_s = self._end(script_s)
         self._course.records += self._kept(self._pipeline.finish())
         self._course.reached = list(pilot.visited)
+        said = list(self._course.said)
         self._executor.close("the trial is over", self._clock())
+        self._course.said = said  # that we stop looking is no fault of what goes on
         return self._course
 
     def _clock(self) -> float:

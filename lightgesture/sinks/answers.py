@@ -32,7 +32,7 @@ _ENDS: Final = ("refused", "aborted", "done")
 def answer_of(record: Record, obeys: bool) -> Answer | None:
     """What a record tells the diver; None: nothing. obeys: whether a vehicle says what becomes of instructions."""
     match record:
-        case VehicleRecord():
+        case VehicleRecord() if record.instruction is not None:
             return _OF_VEHICLE.get(record.state)
         case Instruction():
             return None if obeys else Answer.ACCEPTED

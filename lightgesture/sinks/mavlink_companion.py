@@ -48,9 +48,12 @@ class Companion:
         self.poll(now_s)
 
     def note(self, message: Any, now_s: float) -> None:
-        """Look at a message that came."""
+        """Look at a message that came; of two that wait for the same answer the older gets it."""
         for job, *_ in self._jobs:
-            job.note(message, now_s)
+            if not job.is_done:
+                job.note(message, now_s)
+                if job.is_done:
+                    return
 
     def poll(self, now_s: float) -> None:
         """Send again what was not answered, and tell what was. SinkError: the link is dead."""
@@ -95,7 +98,8 @@ class Companion:
         for name, command, component, params in self._mapping.commands(record):
             order = SendCommand(name=name, command=command, params=tuple(params), component=component)
             self._jobs.append((CommandJob(self._talk, order), name, record))
-        del self._jobs[:-MOST_JOBS]
+        for job, *_ in self._jobs[:-MOST_JOBS]:
+            job.reply.refuse(f"more than {MOST_JOBS} commands wait for an answer")
 
 
 def send_value(talk: Talk, name: str, number: float, time_s: float, is_float: bool) -> None:

@@ -1,26 +1,34 @@
 """Carries instructions out, one task at a time, within the limits of the profile, and ends them at the first fault."""
 
-import threading
 import time
-from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Final
 
 from lightgesture.features.types import Image
-from lightgesture.fsm import Instruction, Notice, State
-from lightgesture.records import FrameRecord, Record, VehicleRecord, VehicleState
-from lightgesture.vehicle.bench import Bench, Frame
+from lightgesture.fsm import Instruction
+from lightgesture.records import Record, VehicleRecord, VehicleState
+from lightgesture.vehicle.bench import Bench
 from lightgesture.vehicle.beside import Beside
-from lightgesture.vehicle.guard import PILOT_S, Fault, Senses, fault, is_recent, obstacle, obstacle_to_motion
-from lightgesture.vehicle.interface import SetMode, Status, Vehicle
+from lightgesture.vehicle.guard import (
+    PILOT_S,
+    Fault,
+    Senses,
+    fault,
+    is_recent,
+    last_of_another,
+    obstacle,
+    obstacle_to_motion,
+)
+from lightgesture.vehicle.intake import MAX_AGE_S, Intake
+from lightgesture.vehicle.interface import Reply, SetMode, Status, Vehicle
 from lightgesture.vehicle.motion import Motion, Word
 from lightgesture.vehicle.profile import Profile
 from lightgesture.vehicle.sticks import Sticks
 from lightgesture.vehicle.task import Plan, Task, plan_for
 
 HELD_UP_S: Final = 0.25
-"""Seconds between two ticks that end a task: the watchdog has sent the middle meanwhile, and what was held is not
-taken up again by itself."""
+"""Seconds between two ticks that end a push or a mission: the watchdog has ended it meanwhile, and it is not taken up
+again by itself. Where nothing is held, as in HOVER, the watchdog had nothing to end."""
 
 CONTINUE: Final = "CONTD"
 """First word of a sentence that leaves the running task alone."""
@@ -50,15 +58,14 @@ class Executor:
         self._profile, self._vehicle, self._publish, self._clock = profile, vehicle, publish, clock
         self._sticks = Sticks(vehicle, profile.stick)
         self._bench = Bench(vehicle, profile, self._sticks, profile.stick.cap)
-        self._lock = threading.Lock()
-        self._inbox: deque[Instruction] = deque()
-        self._senses = Senses()
-        self._frame: Frame | None = None
+        self._intake = Intake(clock)
         self._task: Task | None = None
         self._waiting: Plan | None = None
         self._beside = Beside(self._bench, self._say)
         self._motion = Motion(self._bench)
         self._now_s: float | None = None
+        self._is_watched = True
+        self._holding: Reply | None = None
 
     @property
     def task(self) -> Task | None:
@@ -82,42 +89,31 @@ class Executor:
 
     def show(self, image_bgr: Image | None, records: Sequence[Record]) -> None:
         """Take note of a picture and its records; from any thread, at once."""
-        now_s = self._clock()
-        with self._lock:
-            senses = self._senses
-            picture_s, hand_s, hole = senses.picture_s, senses.hand_s, senses.hole
-            if image_bgr is not None:
-                picture_s, self._frame = now_s, Frame(image_bgr, now_s)
-            for record in records:
-                if isinstance(record, Instruction):
-                    self._inbox.append(record)
-                elif shows_diver(record):
-                    hand_s = now_s
-                elif isinstance(record, Notice) and record.reason == "gap":
-                    hole = record.detail
-            self._senses = Senses(picture_s, hand_s, hole)
+        self._intake.show(image_bgr, records)
 
     def answer(self, word: Word) -> None:
         """Have the vehicle nod or shake, where nothing stands against it; called in the thread of `tick`."""
         if self._task is None:
             self._motion.ask(word)
 
-    def tick(self, now_s: float) -> None:
-        """Do what is to be done at `now_s`."""
-        with self._lock:
-            new, senses = list(self._inbox), self._senses
-            self._inbox.clear()
-            self._senses = Senses(senses.picture_s, senses.hand_s)
-            self._bench.frame = self._frame
+    def tick(self, now_s: float, is_watched: bool = True) -> None:
+        """Do what is to be done at `now_s`. is_watched: whether somebody lets go of the vehicle if this is the last
+        tick; else nothing is begun that moves it."""
+        self._is_watched = is_watched
+        taken = self._intake.take(now_s)
+        senses, self._bench.frame = taken.senses, taken.frame
         self._bench.status = self._vehicle.poll(now_s)
         gap_s = 0.0 if self._now_s is None else now_s - self._now_s
         self._now_s = now_s
         if self._task is not None and self._task.plan.is_moving:
             self._watch(self._task, senses, now_s, gap_s)
-        for record in new:
+        for record in taken.late:
+            self._say("refused", record.text, f"it waited for more than {MAX_AGE_S:g} s; sign it again")
+        for record in taken.new:
             self._obey(record, senses, now_s)
+        self._tell_hold()
         self._advance(senses, now_s)
-        self._sticks.tick(now_s, self._bench.status.stick_s)
+        self._sticks.tick(now_s, last_of_another(self._bench.status))
 
     def settle(self, now_s: float) -> None:
         """After `close`: repeat the middle of the sticks where it is time, for one message may get lost."""
@@ -131,10 +127,14 @@ class Executor:
     def _watch(self, task: Task, senses: Senses, now_s: float, gap_s: float) -> None:
         """End a task that must not go on."""
         status = self._bench.status
-        if gap_s > HELD_UP_S:
-            found: Fault | None = Fault(f"the program was held up for {gap_s:.2f} s")
+        if not self._is_watched:
+            found: Fault | None = Fault("the watchdog has ended")
+        elif gap_s > HELD_UP_S and (self._sticks.is_held or self.goes_on):
+            found = Fault(f"the program was held up for {gap_s:.2f} s")
         else:
-            found = fault(status, task.begun, task.begun_s, senses, now_s, self._profile)
+            found = fault(
+                status, task.begun, task.begun_s, senses, now_s, self._profile, task.plan.uses_sticks
+            )
         if found is None:
             return
         has_left = found.is_anothers and status.boots == task.begun.boots
@@ -153,6 +153,8 @@ class Executor:
         if record.kind in _SIDE_KINDS or record.words[:1] == (CONTINUE,):
             if isinstance(plan, str) or reason is not None:
                 self._say("refused", record.text, str(reason))
+            elif plan.steers:
+                self._say("refused", record.text, f"it steers the vehicle, which {CONTINUE} leaves alone")
             else:
                 self._beside.add(plan, now_s)
             return
@@ -177,6 +179,8 @@ class Executor:
     def _obstacle(self, plan: Plan, senses: Senses, now_s: float) -> str | None:
         status = self._bench.status
         reason = obstacle(status, senses, now_s, self._profile)
+        if reason is None and plan.is_moving and not self._is_watched:
+            reason = "the watchdog does not watch yet"
         if reason is None and plan.is_moving:
             reason = obstacle_to_motion(status, now_s, self._profile, plan.uses_sticks)
         return reason
@@ -196,7 +200,10 @@ class Executor:
             else:
                 self._say("aborted", plan.record.text, reason)
         if self._task is None:
-            self._motion.tick(senses, now_s)
+            if self._is_watched:
+                self._motion.tick(senses, now_s)
+            else:
+                self._motion.stop(now_s)
             return
         task = self._task
         task.tick(self._bench, now_s)
@@ -230,15 +237,16 @@ class Executor:
 
     def _hold(self, now_s: float) -> None:
         if modes := tuple(self._profile.safety.fault_modes):
-            self._vehicle.order(SetMode(names=modes), now_s)
+            self._holding = self._vehicle.order(SetMode(names=modes), now_s)
+
+    def _tell_hold(self) -> None:
+        """Whether the vehicle holds, once it is known."""
+        reply = self._holding
+        if reply is not None and reply.state != "pending":
+            self._holding = None
+            is_held = reply.state == "accepted"
+            self._say("done" if is_held else "refused", None, f"holds: {reply.detail}")
 
     def _say(self, state: VehicleState, instruction: str | None, detail: str) -> None:
         time_s = round(self._clock(), 3)
         self._publish(VehicleRecord(time_s=time_s, state=state, instruction=instruction, detail=detail))
-
-
-def shows_diver(record: Record) -> bool:
-    """Whether a record tells of a hand or a sign in view."""
-    if isinstance(record, FrameRecord):
-        return bool(record.hands)
-    return isinstance(record, State) and record.dwell is not None

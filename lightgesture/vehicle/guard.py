@@ -39,6 +39,13 @@ def is_recent(moment_s: float | None, now_s: float, span_s: float) -> bool:
     return moment_s is not None and now_s - moment_s <= span_s
 
 
+def last_of_another(status: Status) -> float | None:
+    """When another's stick was last heard, or seen to move; None: never."""
+    return max(
+        (moment_s for moment_s in (status.stick_s, status.pilot_s) if moment_s is not None), default=None
+    )
+
+
 def obstacle(status: Status, senses: Senses, now_s: float, profile: Profile) -> str | None:
     """Why nothing at all is begun; None: nothing stands against it."""
     safety = profile.safety
@@ -67,12 +74,20 @@ def obstacle_to_motion(status: Status, now_s: float, profile: Profile, uses_stic
 
 
 def fault(
-    status: Status, begun: Status, begun_s: float, senses: Senses, now_s: float, profile: Profile
+    status: Status,
+    begun: Status,
+    begun_s: float,
+    senses: Senses,
+    now_s: float,
+    profile: Profile,
+    uses_sticks: bool = False,
 ) -> Fault | None:
     """Why a task that moves the vehicle must end; None: it may go on. begun, begun_s: the status at its beginning, and
-    when that was."""
+    when that was. uses_sticks: whether it holds sticks, which then nobody else may send."""
     if status.pilot_s is not None and status.pilot_s > begun_s:
         return Fault("a pilot moved a stick", is_anothers=True)
+    if uses_sticks and status.stick_s is not None and status.stick_s > begun_s:
+        return Fault("another's stick is on the link", is_anothers=True)
     if status.foreign_modes != begun.foreign_modes:
         return Fault(f"someone else changed the mode to {status.mode}", is_anothers=True)
     if status.boots != begun.boots:

@@ -46,11 +46,11 @@ class ParameterJob(Repeated):
         if kind == "PARAM_ERROR":
             self.reply.refuse("the vehicle has no such parameter, or does not let it be changed")
             return
-        self._seen = message.param_value
+        self._seen = seen = float(message.param_value)
         self._kinds[self._name] = message.param_type
         # Single precision on the way; a value that is cut to a whole number comes back as another one.
-        if self._value is None or math.isclose(self._seen, self._value, rel_tol=1e-6, abs_tol=1e-6):
-            self.reply.accept(value=self._seen)
+        if self._value is None or math.isclose(seen, self._value, rel_tol=1e-6, abs_tol=1e-6):
+            self.reply.accept(value=seen)
 
     def give_up(self) -> None:
         """Nothing came, or never the value that was set."""

@@ -1,5 +1,6 @@
 """Whether another holds the sticks: from messages on the link, and from the channels that the vehicle says it gets."""
 
+from collections.abc import Iterator
 from typing import Any, Final
 
 from lightgesture.sinks.mavlink_peer import Peer
@@ -23,6 +24,7 @@ class PilotWatch:
         self.stick_s: float | None = None
         self.pilot_s: float | None = None
         self._pushed_s = float("-inf")
+        self._rest: dict[int, int] = {}
 
     def note_own(self, is_middle: bool, now_s: float) -> None:
         """We have sent sticks."""
@@ -36,15 +38,14 @@ class PilotWatch:
             self._note_stick(message, now_s)
         elif kind == "RC_CHANNELS_OVERRIDE" and message.target_system in (0, self._peer.system):
             self.stick_s = now_s
-            if self._is_moved(message, self._safety.pilot_channels or _FIRST_CHANNELS, "chan%d_raw"):
+            if any(self._is_away(pulse, _MIDDLE_US) for _, pulse in self._pulses(message)):
                 self.pilot_s = now_s
         elif (
             kind == "RC_CHANNELS"
+            and self._safety.pilot_channels
             and message.get_srcSystem() == self._peer.system
-            and now_s - self._pushed_s > ECHO_S
-            and self._is_moved(message, self._safety.pilot_channels, "chan%d_raw")
         ):
-            self.pilot_s = now_s
+            self._note_channels(message, now_s)
 
     def _note_stick(self, message: Any, now_s: float) -> None:
         own = self._stick.system, self._peer.component
@@ -57,9 +58,21 @@ class PilotWatch:
         if any(self._safety.deadband < abs(way) <= 1.5 for way in ways):
             self.pilot_s = now_s
 
-    def _is_moved(self, message: Any, channels: Any, name: str) -> bool:
-        pulses = [getattr(message, name % channel, 0) for channel in channels]
-        return any(
-            _LEAST_US <= pulse <= _GREATEST_US and abs(pulse - _MIDDLE_US) > self._safety.deadband * _WAY_US
-            for pulse in pulses
-        )
+    def _note_channels(self, message: Any, now_s: float) -> None:
+        """A channel is moved where it is neither in the middle nor where it was at first: without a pilot it rests
+        in one of these."""
+        for channel, pulse in self._pulses(message):
+            rest = self._rest.setdefault(channel, pulse)
+            is_moved = self._is_away(pulse, _MIDDLE_US) and self._is_away(pulse, rest)
+            if is_moved and now_s - self._pushed_s > ECHO_S:
+                self.pilot_s = now_s
+
+    def _pulses(self, message: Any) -> Iterator[tuple[int, int]]:
+        """The pilot's channels and their pulses, microseconds; those without a pulse are left out."""
+        for channel in self._safety.pilot_channels or _FIRST_CHANNELS:
+            pulse = getattr(message, f"chan{channel}_raw", 0)
+            if _LEAST_US <= pulse <= _GREATEST_US:
+                yield channel, pulse
+
+    def _is_away(self, pulse: int, place: int) -> bool:
+        return abs(pulse - place) > self._safety.deadband * _WAY_US

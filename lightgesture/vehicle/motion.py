@@ -50,7 +50,7 @@ class Motion:
                 status, now_s, profile, uses_sticks=True
             )
             self._begun = None if blocked else (status, now_s)
-        elif fault(status, *self._begun, senses, now_s, profile) is not None:
+        elif fault(status, *self._begun, senses, now_s, profile, uses_sticks=True) is not None:
             self._begun = None
         stick = None
         if self._begun is not None:

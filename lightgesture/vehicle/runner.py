@@ -52,6 +52,11 @@ class Runner:
         """Who is told."""
         return self._vehicle
 
+    @property
+    def watchdog_pid(self) -> int | None:
+        """Number of the watchdog's process, None where there is none."""
+        return self._watchdog.pid
+
     def start(self) -> None:
         """Begin to obey."""
         self._thread.start()
@@ -90,7 +95,7 @@ class Runner:
     def _tick(self) -> None:
         while self._words:
             self._executor.answer(self._words.pop(0))
-        self._executor.tick(self._clock())
+        self._executor.tick(self._clock(), is_watched=self._watchdog.is_ready)
         self._watchdog.sign(self._vehicle.wire(), self._packets())
 
     def _settle(self) -> None:

@@ -36,12 +36,14 @@ class Run(ABC):
     """One step of one instruction.
 
     detail: what it does, in words. reason: why it is refused. news: what is worth a record; whoever tells it takes it
-    away. is_moving: whether the vehicle moves by it, and so must be armed and watched. uses_sticks: likewise ours.
+    away. is_moving: whether the vehicle moves by it, and so must be armed and watched. uses_sticks: whether it
+    holds sticks. sets_mode: whether it changes the mode.
     goes_on: whether the vehicle goes on by itself where we stop, as in a mission, so that only a mode ends it.
     """
 
     is_moving = True
     uses_sticks = False
+    sets_mode = False
     goes_on = False
 
     def __init__(self, record: Instruction) -> None:
@@ -77,6 +79,8 @@ class OrderRun(Run):
     def __init__(self, record: Instruction, detail: str, order: Order, goes_on: bool = False) -> None:
         super().__init__(record)
         self.detail, self._order, self.goes_on = detail, order, goes_on
+        self.sets_mode = isinstance(order, SetMode | StartMission)
+        self.is_moving = not (isinstance(order, SendCommand) and order.name in CAMERA_COMMANDS)
         self._reply = Reply()
 
     def begin(self, bench: Bench, now_s: float) -> None:

@@ -32,7 +32,7 @@ class Sticks:
         self._vehicle, self._table = vehicle, table
         self._stick = NEUTRAL
         self._until_s: float | None = None
-        self._sent_s = float("-inf")
+        self._sent_s = self._released_s = float("-inf")
         self._is_held = False
 
     @property
@@ -53,12 +53,15 @@ class Sticks:
         """To the middle, which is sent at once and repeated; to_another: who holds them now, and so it is brief."""
         if not self._is_held:
             return
-        self._stick, self._is_held = NEUTRAL, False
+        self._stick, self._is_held, self._released_s = NEUTRAL, False, now_s
         self._until_s = now_s + (YIELD_S if to_another else self._table.neutral_s)
         self._send(now_s)
 
     def tick(self, now_s: float, other_s: float | None = None) -> None:
         """Send them where it is time. other_s: when another's stick was last heard."""
+        if self._until_s is not None and other_s is not None and other_s >= self._released_s:
+            # Whoever took them since needs no middle of ours in between.
+            self._until_s = min(self._until_s, other_s + YIELD_S)
         if self._until_s is not None and now_s > self._until_s:
             self._until_s = None
         if now_s - self._sent_s < 1.0 / self._table.rate_hz - _EARLY_S:

@@ -60,6 +60,11 @@ class Plan:
         return any(run.uses_sticks for run in self.runs)
 
     @property
+    def steers(self) -> bool:
+        """Whether it changes where the vehicle goes."""
+        return any(run.uses_sticks or run.sets_mode for run in self.runs)
+
+    @property
     def takes_pictures(self) -> bool:
         """Whether pictures are taken by it."""
         return any(isinstance(run, CameraRun) for run in self.runs)

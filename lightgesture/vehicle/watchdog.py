@@ -25,6 +25,7 @@ class Watchdog:
     def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
         self._descriptor: int | None = None
+        self._is_ready = False
 
     def sign(self, wire: Wire | None, packets: list[bytes]) -> None:
         """We live. wire: the link; None: it is down, and nothing can be sent. packets: what to send if this was the
@@ -48,14 +49,26 @@ class Watchdog:
             return
         self._write({"bye": True})
         process, self._process = self._process, None
-        assert process.stdin is not None
-        with suppress(OSError):
-            process.stdin.close()
+        for stream in (process.stdin, process.stdout):
+            assert stream is not None
+            with suppress(OSError):
+                stream.close()
         try:
             process.wait(END_S)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether it watches: a process that only begins, or that somebody ended, does not."""
+        if self._process is None or self._process.poll() is not None:
+            return False
+        if not self._is_ready:
+            assert self._process.stdout is not None
+            with suppress(BlockingIOError):
+                self._is_ready = bool(os.read(self._process.stdout.fileno(), 1))
+        return self._is_ready
 
     @property
     def pid(self) -> int | None:
@@ -68,14 +81,15 @@ class Watchdog:
         self._process = subprocess.Popen(
             [sys.executable, "-I", "-S", str(_PROGRAM)],
             stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             pass_fds=(descriptor,),
             start_new_session=True,
         )
-        assert self._process.stdin is not None
-        os.set_blocking(self._process.stdin.fileno(), False)
-        self._descriptor = descriptor
+        for stream in (self._process.stdin, self._process.stdout):
+            assert stream is not None
+            os.set_blocking(stream.fileno(), False)
+        self._descriptor, self._is_ready = descriptor, False
 
     def _write(self, content: dict[str, object]) -> None:
         """Never waits: a watchdog that does not read has our last sign anyway, and is silent about us."""

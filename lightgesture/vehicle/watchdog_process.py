@@ -26,6 +26,9 @@ REPEAT_S = 1.5
 EVERY_S = 0.1
 """Seconds from one to the next."""
 
+READY = b"!"
+"""Written to standard output once, when it watches."""
+
 _READ = 65536
 
 
@@ -95,9 +98,10 @@ def send(content: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Watch standard input."""
+    """Watch standard input, and say so in one byte as soon as nothing stands against it."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)
+    os.write(sys.stdout.fileno(), READY)
     watch(sys.stdin.fileno())
 
 

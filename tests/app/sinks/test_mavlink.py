@@ -311,6 +311,22 @@ def test_refusals_of_the_maps_commands_are_told(station, instruction, sink_with_
     )
 
 
+def test_of_two_alike_each_gets_its_own_answer(station, instruction, sink_with_map):
+    sink, _, told = sink_with_map
+    for text in ("first", "second"):
+        sink.send(instruction(action="SNAP", text=text))
+    _, address = station.socket.recvfrom(65536)
+    for result in (4, 0):
+        message = common.MAVLink_command_ack_message(2000, result, 0, 0, 7, 191)
+        station.socket.sendto(message.pack(common.MAVLink(None, 7, 2)), address)
+    time.sleep(0.05)
+    sink.poll()
+    assert [(record.state, record.instruction) for record in told] == [
+        ("refused", "first"),
+        ("accepted", "second"),
+    ]
+
+
 def test_commands_that_nobody_answers_are_told(station, instruction, sink_with_map):
     sink, now, told = sink_with_map
     sink.send(instruction(action="EXEC", program=2, text="STOP EXEC 2 GO"))

@@ -175,6 +175,25 @@ def test_the_end_does_not_wait_for_a_sink_that_blocks(heartbeat, monkeypatch):
     assert messages == ["fake: 1 records were dropped"]
 
 
+def test_a_sink_that_wants_it_is_polled_and_opened_again_where_that_fails(heartbeat):
+    class Polled(FakeSink):
+        poll_s = 0.005
+        polls = 0
+
+        def poll(self):
+            self.polls += 1
+            if self.polls == 3:
+                raise SinkError("the link is dead")
+
+    sink, messages = Polled(), []
+    box = Outbox(sink, messages.append, Backoff(first_s=0.01))
+    box.start()
+    wait_for(lambda: sink.polls > 5)
+    box.put(heartbeat(1))
+    box.stop()
+    assert messages == ["the link is dead; trying again until it works", "fake: works again"]
+
+
 def test_a_defect_of_a_sink_is_told_and_ends_it_alone(heartbeat):
     sink = FakeSink(sending=[ZeroDivisionError("oops")])
     messages = run(sink, [heartbeat(1)])

@@ -109,9 +109,9 @@ def pictured(number):
 
 
 def test_a_program_while_taking_pictures(world, instruction):
-    """Scenario a of the paper: stop the task and execute program 2 while taking snapshots."""
+    """Scenario a of the paper: stop the task and execute a program while taking snapshots."""
     world.sign(instruction("STOP HOVER 50 GO"))
-    world.sign(instruction("STOP EXEC 2 GO"))
+    world.sign(instruction("STOP EXEC 1 GO"))
     world.sign(instruction("CONTD SNAP GO"))
     assert [type(order) for order in world.vehicle.orders] == [SetMode, StartMission, TakePictures]
     assert world.vehicle.orders[2].count == 1
@@ -122,7 +122,8 @@ def test_a_program_while_taking_pictures(world, instruction):
     assert world.executor.goes_on
     world.vehicle.status["item"] = 3
     world.run(0.05)
-    assert world.states("STOP EXEC 2 GO") == ["sent", "accepted", "executing", "done"]
+    assert world.states("STOP EXEC 1 GO") == ["sent", "accepted", "executing", "done"]
+    assert world.vehicle.orders[-1] == SetMode(names=("POSHOLD", "ALT_HOLD"))
 
 
 def test_a_mission_that_ends_in_another_mode_is_done(world, instruction):
@@ -301,3 +302,114 @@ def test_nod_and_shake_only_while_nothing_is_done(world, instruction):
     world.executor.answer("shake")
     world.run(3)
     assert world.vehicle.sticks == []
+
+
+def test_an_instruction_that_waited_is_not_begun(world, instruction):
+    """The executor may have been held up, by a link that was opened or by a machine that stood still."""
+    world.picture(instruction("STOP UP 5 GO"))
+    world.now_s += 1.5
+    world.run(0.05)
+    assert world.last == ("refused", "it waited for more than 1 s; sign it again")
+    assert world.vehicle.orders == []
+
+
+def test_a_sentence_that_leaves_the_task_running_does_not_steer(make_world, instruction):
+    world = make_world(
+        BASE
+        + '[[instruction]]\naction = "SNAP"\nsteps = [{mode = ["A"]}, {camera = 100}]\n'
+        + '[[instruction]]\naction = "UP"\nsteps = [{stick = {z = 1}}]\n'
+    )
+    for text in ("CONTD SNAP GO", "CONTD UP 5 GO"):
+        world.sign(instruction(text))
+        assert world.last == ("refused", "it steers the vehicle, which CONTD leaves alone")
+    assert world.vehicle.orders == world.vehicle.sticks == []
+
+
+@pytest.mark.parametrize(
+    ("status", "reason"),
+    [
+        ({"is_armed": False}, "the vehicle is not armed, and only its pilot arms it"),
+        ({"pilot_s": 100.0}, "the pilot is steering"),
+        ({"stick_s": 100.0}, "another's stick is on the link"),
+        ({"rival_s": 100.0}, "another companion with our number is on the link"),
+        ({"trouble": "two vehicles"}, "two vehicles"),
+        ({"heard_s": None}, "no vehicle was heard yet"),
+        ({"heard_s": 90.0}, "no heartbeat of the vehicle for 10."),
+    ],
+)
+def test_what_stands_against_a_push(world, instruction, status, reason):
+    world.vehicle.status.update(status)
+    world.sign(instruction("STOP UP 5 GO")).run(1)
+    assert world.states() == ["refused"]
+    assert world.last[1].startswith(reason)
+    assert world.vehicle.sticks == world.vehicle.orders == []
+
+
+def test_pictures_of_a_vehicle_that_is_not_armed(world, instruction):
+    world.vehicle.status["is_armed"] = False
+    world.sign(instruction("CONTD SNAP GO"))
+    assert world.states()[0] == "sent"
+
+
+def test_no_fresh_picture(world, instruction):
+    world.run(0.1)
+    world.has_pictures = False
+    world.run(1.5)
+    world.executor.show(None, [instruction("STOP UP 5 GO")])
+    world.run(0.05)
+    assert world.last == ("refused", "no fresh picture")
+
+
+def test_without_a_watchdog_nothing_moves(world, instruction):
+    world.picture(instruction("STOP UP 5 GO"), instruction("CONTD SNAP GO"))
+    world.now_s += 0.05
+    world.executor.tick(world.now_s, is_watched=False)
+    assert world.states("STOP UP 5 GO") == ["refused"]
+    assert world.states("CONTD SNAP GO")[0] == "sent"
+
+
+def test_whether_it_holds_is_told(world, instruction):
+    world.sign(instruction("STOP EXEC 1 GO"))
+    world.vehicle.answer = lambda order: "POSHOLD failed; ALT_HOLD no answer"
+    world.has_pictures = False
+    world.run(1.2)
+    told = [(record.state, record.instruction, record.detail) for record in world.records[-2:]]
+    assert told == [
+        ("aborted", "STOP EXEC 1 GO", "no new picture for 1 s"),
+        ("refused", None, "holds: POSHOLD failed; ALT_HOLD no answer"),
+    ]
+
+
+def test_the_word_to_kill_ends_everything(world, instruction):
+    world.sign(instruction("STOP UP 10 GO"))
+    for count in (1, 2):
+        world.sign(instruction(f"CONTD SNAP {count} GO"))
+    world.run(1)
+    world.sign(instruction("ABORT NOW", kind="kill", action="ABORT"))
+    assert world.vehicle.sticks[-1][1] == NEUTRAL
+    for text in ("STOP UP 10 GO", "CONTD SNAP 1 GO", "CONTD SNAP 2 GO"):
+        assert world.states(text)[-1] == "aborted"
+    assert world.states("ABORT NOW") == ["done"]
+    assert world.vehicle.orders[-1] == SetMode(names=("POSHOLD", "ALT_HOLD"))
+    world.executor.answer("nod")
+    world.vehicle.sticks.clear()
+    world.run(3)
+    assert {stick for _, stick in world.vehicle.sticks} <= {NEUTRAL}  # who wanted an end wants no motion
+
+
+def test_a_hold_up_ends_a_push_and_not_a_hover(world, instruction):
+    for text, state in (("STOP HOVER 50 GO", "executing"), ("STOP UP 10 GO", "aborted")):
+        world.sign(instruction(text)).run(1)
+        world.now_s += 0.3
+        world.run(0.05)
+        assert world.states(text)[-1] == state
+    assert world.last[1] == "the program was held up for 0.35 s"
+
+
+def test_who_takes_the_sticks_after_a_push_is_left_alone(world, instruction):
+    world.sign(instruction("STOP UP 1 GO")).run(1.1)
+    assert world.records[-1].state == "done"
+    count = len(world.vehicle.sticks)
+    world.vehicle.status["stick_s"] = world.now_s
+    world.run(1)
+    assert len(world.vehicle.sticks) <= count + 2

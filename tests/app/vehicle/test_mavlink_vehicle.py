@@ -51,6 +51,21 @@ def test_a_mode_is_entered_and_seen(boat, autopilot):
     assert (command.target_component, command.param1, command.param2) == (1, 1, 16)
 
 
+def test_a_heartbeat_is_asked_for_where_a_mode_is_awaited(boat, autopilot, monkeypatch):
+    autopilot.BEAT_S = 60
+    boat.until(lambda: True)
+
+    def on_command(message):
+        if message.command == common.MAV_CMD_REQUEST_MESSAGE and message.param1 == 0:
+            autopilot.beat()
+        elif message.command == common.MAV_CMD_DO_SET_MODE:
+            autopilot.mode = int(message.param2)
+            autopilot._acknowledge(message, 0)
+
+    monkeypatch.setattr(autopilot, "_on_command_long", on_command)
+    assert boat.order(SetMode(names=("ALT_HOLD",)), seconds=1).state == "accepted"
+
+
 def test_without_a_position_the_next_mode_is_entered(boat, autopilot):
     reply = boat.order(SetMode(names=("POSHOLD", "ALT_HOLD")))
     assert (reply.state, reply.detail) == ("accepted", "mode ALT_HOLD (POSHOLD failed)")
@@ -228,6 +243,8 @@ def test_a_pilot_is_seen_by_sticks_and_by_channels(boat, autopilot):
     boat.until(lambda: boat.status.pilot_s is not None)
     first_s = boat.status.pilot_s
     channels = [1500] * 18
+    channels[2] = 1100  # where it rests without a pilot
+    autopilot.send(common.MAVLink_rc_channels_message(199_900, 18, *channels, 0))
     channels[0] = 1900  # pitch, which is not among those of the profile
     autopilot.send(common.MAVLink_rc_channels_message(200_000, 18, *channels, 0))
     channels[4] = 1600
@@ -251,7 +268,7 @@ def test_the_vehicle_has_any_number(make_boat, autopilot, quick):
     autopilot.system = 42
     boat = make_boat(profile=quick)
     assert boat.order(SetMode(names=("ALT_HOLD",))).state == "accepted"
-    (command,) = autopilot.of_type("COMMAND_LONG")
+    command = autopilot.of_type("COMMAND_LONG")[0]
     assert (command.target_system, command.get_srcSystem()) == (42, 42)
 
 

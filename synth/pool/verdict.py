@@ -27,6 +27,8 @@ ASIDE_M: Final = 0.3
 """How far it may go in other directions meanwhile, drifting with the water."""
 SETTLED_S: Final = 3.0
 """After which a mode that holds a place holds it."""
+COAST_S: Final = 1.0
+"""For which is still looked once an instruction is done, seconds: water lets a vehicle glide on."""
 ENDLESS: Final = ("HOVER", "FOLLOW")
 """Actions that go on until the next instruction where no time is signed."""
 EFFECT_M, EFFECT_DEG = 0.05, 3.0
@@ -71,7 +73,7 @@ def _verdict(course: Course, sentence: str, record: Instruction | None, profile:
     times_s = [one.time_s for one in said if one.state == "sent"] or [record.time_s]
     ends_s = [one.time_s for one in said if one.state in ("done", "aborted")]
     end_s = ends_s[0] if ends_s else course.moments[-1].time_s
-    span = [moment for moment in course.moments if times_s[0] - 0.1 <= moment.time_s <= end_s + 1.0]
+    span = [moment for moment in course.moments if times_s[0] - 0.1 <= moment.time_s <= end_s + COAST_S]
     if not is_accepted or not span:
         return Verdict(name, sentence, True, is_accepted, is_done, False, None, refusals or "not accepted")
     as_meant, detail = CHECKS[record.action](course, record, span, profile)
@@ -103,7 +105,7 @@ def _hover(
     place = held[0].motion.position
     settled = [moment for moment in held if moment.time_s >= held[0].time_s + SETTLED_S] or held
     off_m = max(math.dist(moment.motion.position, place) for moment in settled)
-    lasted_s = held[-1].time_s - held[0].time_s
+    lasted_s = held[-1].time_s - held[0].time_s - COAST_S
     is_long = record.duration_s is None or abs(lasted_s - record.duration_s) < 2.0
     return off_m < KEPT_M and is_long, f"POSHOLD for {lasted_s:.1f} s, {off_m:.2f} m off at most"
 

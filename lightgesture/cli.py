@@ -20,6 +20,8 @@ from lightgesture.parser import Parser, parse
 COMMANDS = {
     "decode": ("lightgesture.commands.decode", "videos, folders of frames and bags to instructions"),
     "live": ("lightgesture.commands.live", "a camera or a stream to instructions, as they are signed"),
+    "ros2": ("lightgesture.commands.ros2", "a node of ROS 2: pictures of a topic in, instructions out"),
+    "ros1": ("lightgesture.commands.ros1", "the same for ROS 1"),
     "recognize": ("lightgesture.commands.recognize", "single pictures to hands and their tokens"),
     "calibrate": ("lightgesture.commands.calibrate", "some seconds of open hands to a colour profile"),
     "signs": (
@@ -45,6 +47,10 @@ COMMANDS = {
     "config": ("lightgesture.commands.config", "write a configuration file with every option"),
     "completion": ("lightgesture.commands.completion", "what a shell needs to complete commands and options"),
     "manual": ("lightgesture.commands.manual", "the man page"),
+    "simulate": (
+        "lightgesture.synth.pool.command",
+        "a pool: diver, decoder, executor and vehicle; film and table",
+    ),
 }
 """Name of a command to its module and its line of help.
 
@@ -62,6 +68,7 @@ EXTRAS = {
     "dask": "cluster",
     "distributed": "cluster",
     "rosbags": "bag",
+    "mujoco": "sim",
     "pymavlink": "mavlink",
     "serial": "mavlink",
     "fpdf": "print",

@@ -5,7 +5,7 @@ Each part draws from its own stream of the seed, so that changing the water does
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +37,10 @@ BARE_CUFF_MM = 40.0
 """Where a bare forearm passes from the hand's rendering to the body's, from the wrist."""
 DAYLIGHT = (-0.25, -0.85, 0.55)
 """Where light comes from under water, image axes."""
+
+
+View = Callable[[DiverState], DiverState | None]
+"""From where the diver is before a camera that stays to where the diver is before one that moved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +104,19 @@ class Scene:
         for index in range(self.frame_count):
             yield self.frame(index)
 
-    def frame(self, index: int) -> SceneFrame:
-        """One frame by number."""
+    def frame(self, index: int, view: View | None = None) -> SceneFrame:
+        """One frame by number; beyond the last one the diver stays with lowered hands.
+
+        view: where the diver of the script is seen by a camera that moves; None from it: out of the picture.
+        """
         time_s = index / self.spec.fps
         state, moment = self._performance.state(index, time_s)
         picture = self._backdrop.frame(time_s)
+        seen = state if view is None else view(state)
+        if seen is None:
+            image = self._sensor.expose(picture, index, time_s)
+            return SceneFrame(image, FrameRecord(source=None, frame=index, time_s=time_s))
+        state = seen
         drawn, cover = draw_diver(picture, state, self._look, self._camera, self._light, self._water)
         if self._water is not None:
             self._draw_water_effects(picture, cover, state, time_s, self._water)
@@ -114,6 +126,10 @@ class Scene:
             hand for hand in (_truth(item, token) for item, token in zip(drawn, tokens, strict=True)) if hand
         )
         return SceneFrame(image, FrameRecord(source=None, frame=index, time_s=time_s, hands=hands))
+
+    def diver(self, index: int) -> DiverState:
+        """Where the diver of the script is in a frame, before a camera that stays."""
+        return self._performance.state(index, index / self.spec.fps)[0]
 
     def _draw_water_effects(
         self,

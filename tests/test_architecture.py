@@ -37,9 +37,12 @@ HEAVY = frozenset(
         "fpdf",
         "gpiozero",
         "matplotlib",
+        "mujoco",
         "pydantic",
         "pymavlink",
+        "rclpy",
         "rosbags",
+        "rospy",
         "sklearn",
         "torch",
     }

@@ -22,7 +22,7 @@ from lightgesture.results import JsonPrinter, TextPrinter
 from lightgesture.results.overlay import Overlay
 from lightgesture.sinks import Outbox, Sink, make_answers, make_sinks
 from lightgesture.sinks.printer import PrinterSink
-from lightgesture.sources import live_source, refuse_missing_device
+from lightgesture.sources import LiveSource, live_source, refuse_missing_device
 
 if TYPE_CHECKING:
     from lightgesture.vehicle.runner import Runner
@@ -32,20 +32,22 @@ DEBUG_STEM = "live"
 
 
 def run_live(
-    source_name: str,
+    source: str | LiveSource,
     settings: DecodeSettings,
     listeners: Sequence[Listener] = (),
     heartbeat_s: float = HEARTBEAT_S,
 ) -> ExitStatus:
-    """Decode a stream until it ends for good, nobody takes the records any more, or a signal asks for the end.
+    """Decode a stream, by its name or as it stands, until it ends for good, nobody takes the records any more, or a
+    signal asks for the end.
 
     OK, also after SIGTERM, for a service that is asked to stop has not failed; INTERRUPTED after Ctrl-C; SOME_FAILED
     if the reader of standard output went away and nobody else takes the records, the stream was given up, or not one
     picture could be decoded.
     UsageError: the source, an option, the model or the grammar is wrong.
     """
-    refuse_missing_device(source_name)
-    source = live_source(source_name, settings.source_options)
+    if isinstance(source, str):
+        refuse_missing_device(source)
+        source = live_source(source, settings.source_options)
     report = make_report()
     clock = make_clock()
 
@@ -115,9 +117,10 @@ def _serving(
     from lightgesture.web import WebListener
 
     draw = Overlay("below", settings.rotate).draw
-    obeys = settings.obey is not None
+    obeys, is_extension = settings.obey is not None, settings.web_blueos
+    grammar = pipeline.decoder.grammar
     page = stack.enter_context(
-        WebListener(settings.web, settings.web_host, draw, pipeline.decoder.grammar, obeys)
+        WebListener(settings.web, settings.web_host, draw, grammar, obeys=obeys, is_extension=is_extension)
     )
     if not settings.quiet:
         report(f"the page is at {page.address}")

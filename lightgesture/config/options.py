@@ -59,7 +59,7 @@ def load_settings(args: argparse.Namespace) -> DecodeSettings:
     try:
         return DecodeSettings.model_validate({**config, **given})
     except ValidationError as error:
-        raise UsageError(_explain(error, _flag)) from None
+        raise UsageError(explain(error, _flag)) from None
 
 
 def read_config(path: str) -> dict[str, Any]:
@@ -75,7 +75,7 @@ def read_config(path: str) -> dict[str, Any]:
     except TomlError as error:
         raise UsageError(f"{path}: {error}") from None
     except ValidationError as error:
-        raise UsageError(f"{path}: {_explain(error, str)}") from None
+        raise UsageError(f"{path}: {explain(error, str)}") from None
     _check_holds(content, f"{path}: ", str)
     folder = os.path.dirname(path)
     return content | change_paths(content, lambda name: os.path.join(folder, name))
@@ -96,7 +96,8 @@ def _help(field: FieldInfo, metavar: str | None) -> str:
     return text if is_told else f"{text} (default: {field.default})"
 
 
-def _explain(error: ValidationError, show: Any) -> str:
+def explain(error: ValidationError, show: Callable[[str], str]) -> str:
+    """What is wrong with which options, in one line; `show` writes an option's name as its user did."""
     return "; ".join(_explain_one(detail, show) for detail in error.errors(include_url=False))
 
 

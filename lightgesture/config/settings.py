@@ -291,6 +291,11 @@ class DecodeSettings(BaseModel):
         only=(LIVE, PRACTICE),
         min_length=1,
     )
+    web_blueos: bool = _option(
+        False,
+        "serve the page as an extension of BlueOS: listed and shown by it, under any name that ends in .local",
+        only=(LIVE,),
+    )
     debug_dir: str | None = _option(
         None,
         "write a picture of every stage: DIR/<input stem>/<stage>-<frame>.png",

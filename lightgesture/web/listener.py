@@ -40,7 +40,8 @@ class WebListener:
 
     port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
     draw: what makes the annotated picture. grammar: of the page of signs; None: there is none. obeys: whether a vehicle
-    says what becomes of instructions. `show` never waits for a browser, and draws nothing itself.
+    says what becomes of instructions. is_extension: of BlueOS, see `WebServer`. `show` never waits for a browser, and
+    draws nothing itself.
     """
 
     def __init__(
@@ -49,9 +50,11 @@ class WebListener:
         host: str = LOOPBACK,
         draw: Draw | None = None,
         grammar: Grammar | None = None,
+        *,
         obeys: bool = False,
+        is_extension: bool = False,
     ) -> None:
-        self._port, self._host = port, host
+        self._port, self._host, self._is_extension = port, host, is_extension
         self._draw = draw or Overlay("below").draw
         self._language = None if grammar is None else Language(grammar)
         self._board = Board(None if self._language is None else self._language.expected, obeys)
@@ -81,8 +84,8 @@ class WebListener:
     def start(self) -> None:
         """Begin to serve. UsageError: the address cannot be had."""
         try:
-            files = {} if self._language is None else self._language.files()
-            self._server = WebServer(self._host, self._port, self._board, files)
+            more = {} if self._language is None else self._language.files()
+            self._server = WebServer(self._host, self._port, self._board, more, self._is_extension)
         except OSError as error:
             raise UsageError(
                 f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"

@@ -5,6 +5,7 @@ Every browser has a thread of its own, and there is a bound to everything that o
 
 import ipaddress
 import json
+import re
 import socket
 import socketserver
 import threading
@@ -17,6 +18,7 @@ from importlib.resources import files
 from typing import Any, Final, cast
 from urllib.parse import urlsplit
 
+from lightgesture._version import __version__
 from lightgesture.web.board import Board
 
 PAGES = {
@@ -70,12 +72,30 @@ BEAT_S: Final = 2.0
 SEND_BUFFER: Final = 128 * 1024
 """Bytes that may wait in the system for a browser: what lies there is old by the time it is seen."""
 
+NO_FRAMES: Final = "frame-ancestors 'none'"
+"""What `HEADERS` says of frames, unless it is an extension."""
+
+LOCAL_NAME: Final = re.compile(r"[a-z0-9-]{1,63}\.local")
+"""Names of multicast DNS: no other site of the internet can have one."""
+
+SERVICE: Final = {
+    "name": "Diver's signs",
+    "description": "Reads a diver's hand signs and turns them into instructions",
+    "icon": "mdi-hand-okay",
+    "company": "lightgesture",
+    "version": __version__,
+    "webpage": "",
+    "api": "/state.json",
+}
+"""What an extension tells BlueOS of itself."""
+
 BOUNDARY = "lightgesture"
 _BUSY = b"HTTP/1.0 503 Service Unavailable\r\nRetry-After: 5\r\nContent-Length: 0\r\n\r\n"
 
 
 class WebServer(ThreadingHTTPServer):
-    """Serves a board. more: path to content and type of further files.
+    """Serves a board. more: path to content and type of further files. is_extension: of BlueOS, which lists it by what
+    `/register_service` says, shows it within its own page, and calls it by any name that ends in `.local`.
 
     Raises OSError where the port or the address cannot be had.
     """
@@ -83,9 +103,14 @@ class WebServer(ThreadingHTTPServer):
     daemon_threads = True
 
     def __init__(
-        self, host: str, port: int, board: Board, more: Mapping[str, tuple[bytes, str]] | None = None
+        self,
+        host: str,
+        port: int,
+        board: Board,
+        more: Mapping[str, tuple[bytes, str]] | None = None,
+        is_extension: bool = False,
     ) -> None:
-        self.board = board
+        self.board, self.is_extension = board, is_extension
         self.names = known_names(host)
         self.viewers = threading.BoundedSemaphore(VIEWERS)
         self.listeners = threading.BoundedSemaphore(LISTENERS)
@@ -138,7 +163,7 @@ class _Handler(BaseHTTPRequestHandler):
         """Nothing on standard error, which is for the decoder."""
 
     def do_GET(self) -> None:
-        if not is_known(self.headers.get("Host"), self._web.names):
+        if not self._is_called_by_its_name():
             self._refuse(
                 HTTPStatus.MISDIRECTED_REQUEST, "call this server by its address, localhost or its name"
             )
@@ -152,6 +177,8 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(json.dumps(content).encode(), "application/json")
         elif path == "/log.jsonl":
             self._send(self._web.board.log().encode(), "application/jsonl; charset=utf-8")
+        elif path == "/register_service" and self._web.is_extension:
+            self._send(json.dumps(SERVICE).encode(), "application/json")
         elif path == "/stream.mjpg":
             self._stream()
         elif path == "/events":
@@ -192,6 +219,18 @@ class _Handler(BaseHTTPRequestHandler):
                 entry = update.entries[-1]["number"] if update.entries else entry
                 time.sleep(1.0 / UPDATES_PER_S)
 
+    def _is_called_by_its_name(self) -> bool:
+        header = self.headers.get("Host")
+        name = name_of((header or "").strip()) if self._web.is_extension else None
+        is_local = name is not None and LOCAL_NAME.fullmatch(name.lower()) is not None
+        return is_local or is_known(header, self._web.names)
+
+    def _frameable(self, value: str) -> str:
+        """The header that lets pages of the same machine, on any port, show this one in a frame."""
+        name = name_of((self.headers.get("Host") or "").strip())
+        is_shown = name is not None and ":" not in name and self._is_called_by_its_name()
+        return value.replace(NO_FRAMES, f"frame-ancestors http://{name}:*") if is_shown else value
+
     def _last_entry(self) -> int:
         """Number of the last entry that a browser had before it lost the connection; 0 in another run."""
         run, _, number = self.headers.get("Last-Event-ID", "").partition("-")
@@ -213,7 +252,7 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_response(status)
         self.send_header("Content-Type", kind)
         for name, value in HEADERS.items():
-            self.send_header(name, value)
+            self.send_header(name, self._frameable(value) if self._web.is_extension else value)
         if length is not None:
             self.send_header("Content-Length", str(length))
         if status == HTTPStatus.SERVICE_UNAVAILABLE:

@@ -51,6 +51,9 @@ EXTRAS = {
     "rosbags": "bag",
     "pymavlink": "mavlink",
     "serial": "mavlink",
+    "pupil_apriltags": "tags",
+    "fpdf": "tags",
+    "pypdfium2": "tags",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

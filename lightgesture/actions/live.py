@@ -82,7 +82,7 @@ def _for_pipeline(settings: DecodeSettings) -> DecodeSettings:
     a stream has no steady rate: unless the user chose another, or brings a grammar with a dwell of its own."""
     changes: dict[str, object] = {"frames": True}
     given = settings.rule, settings.hold, settings.hold_seconds, settings.grammar
-    if given == (None, None, None, None):
+    if settings.front_end == "hands" and given == (None, None, None, None):
         changes["hold_seconds"] = HOLD_S
     return settings.model_copy(update=changes)
 

@@ -16,7 +16,7 @@ from lightgesture.features.image import as_bgr8
 from lightgesture.features.types import Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand, Record
+from lightgesture.records import CardSign, FrameRecord, Hand, Record
 
 _Colour = tuple[int, int, int]
 
@@ -57,11 +57,12 @@ class Message:
 class OverlayState:
     """All that an overlay shows.
 
-    hands: of the latest frame record. sentence: the words so far, empty while idle. dwell: the hold that grows.
+    hands, signs: of the latest frame record. sentence: the words so far, empty while idle. dwell: the hold that grows.
     message: None where none is in view. time_s: of the latest record, seconds.
     """
 
     hands: tuple[Hand, ...] = ()
+    signs: tuple[CardSign, ...] = ()
     sentence: str = ""
     dwell: Growth | None = None
     message: Message | None = None
@@ -94,7 +95,7 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
             state = replace(state, time_s=time_s)
         match record:
             case FrameRecord():
-                state = replace(state, hands=record.hands)
+                state = replace(state, hands=record.hands, signs=record.signs or ())
             case State():
                 state = replace(state, sentence=record.sentence, dwell=record.dwell)
             case Instruction():
@@ -120,6 +121,8 @@ def render(image_bgr: Image, state: OverlayState) -> Image:
     pen = _Pen(picture, letter)
     for hand in state.hands:
         _draw_hand(pen, hand)
+    for card in state.signs:
+        _draw_card(pen, card)
     _draw_sentence(pen, state)
     if state.message is not None:
         _draw_message(pen, state.message)
@@ -187,9 +190,25 @@ def _draw_hand(pen: _Pen, hand: Hand) -> None:
     colour = _GREEN if hand.token is not None else _AMBER
     cv2.rectangle(pen.picture, (x, y), (x + width, y + height), colour, max(1, round(pen.letter / 6)))
     what = f"{hand.token} {hand.confidence:.0%}" if hand.token is not None else f"? {hand.reason}"
-    label = pen.fit(f"{hand.side[0].upper()}: {what}", pen.width - 2 * pen.margin)
+    _label(pen, f"{hand.side[0].upper()}: {what}", (x, y), colour)
+
+
+def _draw_card(pen: _Pen, card: CardSign) -> None:
+    outline = np.rint(np.array(card.corners)).astype(np.int32)
+    colour = _GREEN if card.word is not None else _AMBER
+    width = max(1, round(pen.letter / 6))
+    cv2.polylines(pen.picture, [outline.reshape(-1, 1, 2)], True, colour, width, cv2.LINE_AA)
+    x, y = outline.min(axis=0).tolist()
+    side = "" if card.side is None else f"{card.side[0].upper()}: "
+    _label(pen, f"{side}{card.word or f'tag {card.id}'}", (x, y), colour)
+
+
+def _label(pen: _Pen, text: str, corner: tuple[int, int], colour: _Colour) -> None:
+    """A text above what has its upper left corner there, or inside where the picture ends; never out of the picture at
+    the sides."""
+    x, y = corner
+    label = pen.fit(one_line(text), pen.width - 2 * pen.margin)
     wide = pen.measure(label) + 2 * pen.margin
-    # Above its box, or inside where the picture ends; never out of the picture at the sides.
     left = max(0, min(x, pen.width - wide))
     top = y - pen.row if y >= pen.row else y
     pen.panel(left, top, wide, pen.row)
@@ -218,9 +237,7 @@ def _draw_dwell(pen: _Pen, dwell: Growth | None, top: int) -> None:
     cv2.rectangle(pen.picture, (left, low), (right, high), _GREY, 1)
     if dwell is not None:
         meaning = dwell.word if dwell.word is not None else "no word"
-        label = pen.fit(
-            one_line(f"{dwell.pair[0]},{dwell.pair[1]}: {meaning}"), right - left - 2 * pen.margin
-        )
+        label = pen.fit(one_line(f"{','.join(dwell.pair)}: {meaning}"), right - left - 2 * pen.margin)
         pen.write(label, left + pen.margin, top, _WHITE)
 
 

@@ -69,6 +69,7 @@ class Board:
             "sentence": "",
             "dwell": None,
             "hands": [],
+            "signs": None,
             "ended": None,
         }
         self._entry_count = 0
@@ -169,13 +170,14 @@ class Board:
         self._state["source"] = record.get("source")
         self._state["time_s"] = record.get("time_s", self._state.get("time_s"))
         if kind == "frame":
-            self._state["hands"] = record["hands"]
+            shown = {"hands": record.get("hands", []), "signs": record.get("signs")}
+            self._state |= shown
         elif kind == "state":
             self._state |= {name: record[name] for name in ("state", "sentence", "dwell")}
         elif kind == "heartbeat":
             self._state |= {name: record[name] for name in ("frames", "dropped", "ms_per_frame")}
         elif kind == "summary":
-            self._state |= {"ended": record["status"], "hands": [], "dwell": None}
+            self._state |= {"ended": record["status"], "hands": [], "signs": None, "dwell": None}
         elif kind in ENTRIES:
             self._entry_count += 1
             self._entries.append({**record, "number": self._entry_count, "wall_s": round(time.time(), 3)})

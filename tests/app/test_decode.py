@@ -60,6 +60,8 @@ def test_plain_words(run, make_video):
 def test_options_reach_the_pipeline(run, make_folder, fake):
     run("decode", make_folder("frames", 2), "--hold", 3, "--mirrored", "--grammar", "my.toml", "--fps", 4)
     assert fake.made[-1].options == {
+        "front_end": "hands",
+        "tag_detector": "aruco",
         "model": "cnn",
         "selector": "learned",
         "profile": None,

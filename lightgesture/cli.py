@@ -30,6 +30,7 @@ COMMANDS = {
         "score the models and the whole chain on labelled pictures or rendered dives",
     ),
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
+    "tags": ("lightgesture.commands.tags", "print the book of cards, and read it back"),
     "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
 }
@@ -52,7 +53,7 @@ EXTRAS = {
     "pymavlink": "mavlink",
     "serial": "mavlink",
     "pupil_apriltags": "tags",
-    "fpdf": "tags",
+    "fpdf": "print",
     "pypdfium2": "tags",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""

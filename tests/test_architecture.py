@@ -30,7 +30,10 @@ BELOW = {
 """Rooms, and the rooms that each may import."""
 
 HEAVY = frozenset(
-    {"av", "dask", "distributed", "matplotlib", "pydantic", "pymavlink", "rosbags", "sklearn", "torch"}
+    {
+        *("av", "dask", "distributed", "fpdf", "matplotlib", "pupil_apriltags", "pydantic", "pymavlink"),
+        *("pypdfium2", "rosbags", "sklearn", "torch"),
+    }
 )
 """Libraries that only some uses need: imported in the function that uses them."""
 

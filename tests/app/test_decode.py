@@ -81,6 +81,8 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert (options["rule"], options["caution"], options["threshold"]) == ("sentence", 2.0, 0.5)
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {
+        "front_end": "hands",
+        "tag_detector": "aruco",
         "model": "cnn",
         "selector": "learned",
         "profile": None,

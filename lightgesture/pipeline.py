@@ -64,7 +64,8 @@ class Pipeline:
     net), see `features.find.selector`. profile: path of a colour profile of the diver's hands, which replaces the map
     of skin colours; None for that map. threshold: least probability of a token, 0 to 1; None for the reader's own.
 
-    Cards: tag_detector: "aruco" (OpenCV's) or "apriltag" (the extra `tags`, for murk).
+    Cards: tag_detector: "aruco" (OpenCV's) or "apriltag" (the extra `tags`, for murk). shapes: path of a file of shapes
+    for "tag-motion", beside those of the package.
 
     The decoder: rule: "frames", "seconds", "evidence" or "sentence", None for the grammar's own. hold: consecutive
     frames that a sign is held; hold_seconds: seconds instead; both None for the grammar's own. caution: of the rule
@@ -77,7 +78,8 @@ class Pipeline:
     start_utc: the moment at which time_s is 0, if that is known; it may be set before any frame, and gives the records
     their `utc`.
     Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
-    lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
+    lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError,
+    lightgesture.features.motion.shapes.ShapesError or ValueError: one line each.
     """
 
     def __init__(
@@ -92,6 +94,7 @@ class Pipeline:
         mirrored: bool = False,
         threshold: float | None = None,
         tag_detector: DetectorName = "aruco",
+        shapes: str | os.PathLike[str] | None = None,
         rule: Rule | None = None,
         hold: int | None = None,
         hold_seconds: float | None = None,
@@ -107,7 +110,7 @@ class Pipeline:
             "profile": profile is not None,
             "threshold": threshold is not None,
         }
-        of_cards = {"tag_detector": tag_detector != "aruco"}
+        of_cards = {"tag_detector": tag_detector != "aruco", "shapes": shapes is not None}
         if front is not None:
             of_any = {"front_end": front_end != HANDS, "mirrored": mirrored}
             _refuse("another front end", {**of_any, **of_hands, **of_cards})
@@ -135,7 +138,9 @@ class Pipeline:
         elif source is not None:
             decoder = decoder.for_stream(source)
         if front is None and front_end != HANDS:
-            front = make_card_reader(decoder.grammar, front_end, detector=tag_detector, mirrored=mirrored)
+            front = make_card_reader(
+                decoder.grammar, front_end, detector=tag_detector, shapes=shapes, mirrored=mirrored
+            )
         if front is None:
             front = HandReader(
                 ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.tags.following import follow_corners
 from lightgesture.features.tags.tag import Tag, cells_of, dictionary, examine
 from lightgesture.features.types import Float
 
@@ -95,6 +96,8 @@ class ArucoTags:
             one.minDistanceToBorder = 0
         self._whole, self._near = (cv2.aruco.ArucoDetector(codes, one) for one in (whole, near))
         self._last: dict[int, tuple[Tag, float]] = {}
+        self._before: Grey | None = None
+        self._before_s = 0.0
 
     def process(self, grey: Grey, time_s: float) -> tuple[Tag, ...]:
         """See TagDetector."""
@@ -102,6 +105,7 @@ class ArucoTags:
         found += self._follow(grey, time_s, {tag.id for tag in found})
         for tag in found:
             self._last[tag.id] = tag, time_s
+        self._before, self._before_s = grey, time_s
         return tuple(sorted(found, key=lambda tag: -tag.side))
 
     def _follow(self, grey: Grey, time_s: float, found: set[int]) -> list[Tag]:
@@ -111,12 +115,26 @@ class ArucoTags:
             if not 0.0 <= time_s - last_s <= self._settings.follow_s:
                 del self._last[number]
             elif number not in found:
-                window, corner = _window(grey, tag, self._settings.follow_reach)
-                if min(window.shape) > 0:
-                    scale = 2.0 if tag.side < self._settings.small_side else 1.0
-                    near = self._detect(self._near, window, grey, scale, corner)
-                    tags += [other for other in near if other.id == number]
+                again = self._look_near(grey, tag) or self._flow(grey, tag, last_s)
+                tags += [] if again is None else [again]
         return tags
+
+    def _look_near(self, grey: Grey, tag: Tag) -> Tag | None:
+        """A lost tag by a closer look at where it was."""
+        window, corner = _window(grey, tag, self._settings.follow_reach)
+        if min(window.shape) == 0:
+            return None
+        scale = 2.0 if tag.side < self._settings.small_side else 1.0
+        near = self._detect(self._near, window, grey, scale, corner)
+        return next((other for other in near if other.id == tag.id), None)
+
+    def _flow(self, grey: Grey, tag: Tag, last_s: float) -> Tag | None:
+        """A tag of the frame before by how its cells moved."""
+        before = self._before
+        if before is None or last_s != self._before_s or before.shape != grey.shape:
+            return None
+        corners = follow_corners(before, grey, tag.corners, len(cells_of(self._family, tag.id)))
+        return None if corners is None else checked(grey, self._family, tag.id, corners, self._settings)
 
     def _detect(
         self,

@@ -3,7 +3,7 @@
 from typing import Final
 
 from lightgesture.fsm.language.document import key_path
-from lightgesture.fsm.language.grammar import CardWords, Defect, MotionWords
+from lightgesture.fsm.language.grammar import STILL, CardWords, Defect, MotionWords
 from lightgesture.fsm.language.schema import GrammarFile, MotionsTable, TagsTable
 from lightgesture.fsm.signs import Pair
 
@@ -12,9 +12,6 @@ FAMILIES: Final = {"25h9": 35, "36h10": 2320, "36h11": 587}
 
 CANCEL: Final = "CANCEL"
 """The word that cancels by a card or a motion where [control] names none."""
-
-STILL: Final = "still"
-"""Names the hand that does not move in a pair of [motions]."""
 
 
 def words_of(table: TagsTable | MotionsTable | None) -> dict[str, str]:

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from lightgesture.fsm.language.forms import Vocabulary
 from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter, SentenceSettings
 from lightgesture.fsm.language.table import Table
 from lightgesture.fsm.signs import Pair
+
+STILL: Final = "still"
+"""Names the hand that does not move in a pair of [motions]."""
 
 
 class Defect(NamedTuple):

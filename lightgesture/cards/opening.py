@@ -1,13 +1,18 @@
 """Which front end reads cards, and how long they are shown to count."""
 
+import os
 from dataclasses import replace
 from functools import partial
 from typing import Final, Literal
 
 from lightgesture.cards.front import CardReader
+from lightgesture.cards.motion_front import MotionReader
+from lightgesture.features.motion.matching import ShapeBase
+from lightgesture.features.motion.shapes import load_shapes
 from lightgesture.features.tags.detector import DetectorName, make_detector
 from lightgesture.front_end import FrontEnd
 from lightgesture.fsm import Grammar, GrammarError
+from lightgesture.fsm.language.grammar import STILL, MotionWords
 
 FrontEndName = Literal["hands", "tags", "tag-motion"]
 """Bare hands, cards, or two cards that are moved."""
@@ -40,10 +45,33 @@ def language_of_cards(grammar: Grammar, name: FrontEndName) -> Grammar:
 
 
 def make_card_reader(
-    grammar: Grammar, name: FrontEndName, *, detector: DetectorName = "aruco", mirrored: bool = False
+    grammar: Grammar,
+    name: FrontEndName,
+    *,
+    detector: DetectorName = "aruco",
+    shapes: str | os.PathLike[str] | None = None,
+    mirrored: bool = False,
 ) -> FrontEnd:
-    """The front end of a grammar that `language_of_cards` gave. ValueError: the detector does not read the family."""
-    if name != "tags" or grammar.tags is None:
-        raise ValueError(f"{name}: reads no cards of {grammar.file}")
-    make = partial(make_detector, detector, grammar.tags.family)
-    return CardReader(grammar.tags, make, mirrored=mirrored)
+    """The front end of a grammar that `language_of_cards` gave. shapes: file of shapes of one's own.
+
+    ValueError, ShapesError: the detector does not read the family, the file is wrong, or the grammar names a shape that
+    nobody knows.
+    """
+    if name == "tags" and grammar.tags is not None:
+        make = partial(make_detector, detector, grammar.tags.family)
+        return CardReader(grammar.tags, make, mirrored=mirrored)
+    if name == "tag-motion" and grammar.motions is not None:
+        make = partial(make_detector, detector, grammar.motions.family)
+        return MotionReader(grammar.motions, _base(grammar, grammar.motions, shapes), make, mirrored=mirrored)
+    raise ValueError(f"{name}: reads no cards of {grammar.file}")
+
+
+def _base(grammar: Grammar, words: MotionWords, file: str | os.PathLike[str] | None) -> ShapeBase:
+    """The shapes that the words of a grammar are made of; what no word needs could only be mistaken."""
+    known = load_shapes(file)
+    used = dict.fromkeys(name for pair in words.words for name in pair if name != STILL)
+    for name in used:
+        if name not in known:
+            remedy = f"use one of {', '.join(known)}, or record it and give the file with --shapes"
+            raise GrammarError.at(grammar.file, "motions", f"'{name[:40]}' is no shape that is known", remedy)
+    return ShapeBase({name: known[name] for name in used})

@@ -132,6 +132,13 @@ class DecodeSettings(BaseModel):
         "how cards are found: aruco (OpenCV) or apriltag (for murk; slower, needs lightgesture[tags])",
         "aruco|apriltag",
     )
+    shapes: str | None = _option(
+        None,
+        "shapes of your own for moved cards, from `motions record`",
+        "FILE",
+        kind="path",
+        min_length=1,
+    )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
     fps: float = _option(
         DEFAULT_FPS,

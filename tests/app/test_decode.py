@@ -62,6 +62,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert fake.made[-1].options == {
         "front_end": "hands",
         "tag_detector": "aruco",
+        "shapes": None,
         "model": "cnn",
         "selector": "learned",
         "profile": None,
@@ -83,6 +84,7 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert fake.made[-1].options == {
         "front_end": "hands",
         "tag_detector": "aruco",
+        "shapes": None,
         "model": "cnn",
         "selector": "learned",
         "profile": None,

@@ -48,7 +48,7 @@ def test_every_option_may_stand_in_the_file(config):
         'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
         'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nhook = ["say hello"]\n'
         'web = 8080\nweb-host = "::1"\n'
-        'front-end = "tags"\ntag-detector = "apriltag"\n'
+        'front-end = "tags"\ntag-detector = "apriltag"\nshapes = "/s.json"\n'
         "insecure = true\ngive-up = 90.0\nrecursive = true\njoin = true\n"
     )
     settings = load("--config", path)
@@ -64,6 +64,7 @@ def test_every_option_may_stand_in_the_file(config):
         "threshold": 0.6,
         "front_end": "tags",
         "tag_detector": "apriltag",
+        "shapes": "/s.json",
         "mirrored": True,
         "fps": 12.5,
         "as_json": True,

@@ -31,6 +31,7 @@ COMMANDS = {
     ),
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
     "tags": ("lightgesture.commands.tags", "print the book of cards, and read it back"),
+    "motions": ("lightgesture.commands.motions", "shapes that moved cards draw: show them, record another"),
     "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
 }

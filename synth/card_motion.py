@@ -22,10 +22,9 @@ from lightgesture.synth.spec import CardSpec
 Grip = Literal["left", "right", "both"]
 """Which hands hold a card, by the diver's own side."""
 
-SHOWN_MM: Final = (0.0, 60.0, 300.0)
-"""Where a card is shown, body frame; one hand holds it SIDEWAYS_MM to its own side."""
-
 SIDEWAYS_MM: Final = 110.0
+"""How far to its own side of where it is shown one hand holds a card."""
+
 APART_MM: Final = 215.0
 """From the middle to each of two cards that are moved."""
 
@@ -130,7 +129,7 @@ class CardPerformance:
         grip, number = self._held_by(before, after), self._steps[index].id or 0
         sign = {"left": 1.0, "right": -1.0, "both": 0.0}[grip]
         shift, turn = self._keys[index]
-        shown = np.array(SHOWN_MM) + np.array([sign * SIDEWAYS_MM, 0.0, 0.0]) + shift
+        shown = np.array(self._spec.shown_mm) + np.array([sign * SIDEWAYS_MM, 0.0, 0.0]) + shift
         share = 1.0 if before == after else part if index == after else 1.0 - part
         place = 1 if grip != "left" else 0
         card = self._between(shown, turn, share, -1.0 if sign <= 0.0 else 1.0, number, shake[3 * place :][:3])
@@ -146,7 +145,7 @@ class CardPerformance:
         # How they are held stays for a sentence: that of the first step after the last lowered hands.
         key = next(index for index in range(before, -1, -1) if self._steps[index].kind == "lowered")
         shift, turn = self._keys[key]
-        shown = np.array(SHOWN_MM) + np.array([sign * APART_MM, 0.0, 0.0]) + shift
+        shown = np.array(self._spec.shown_mm) + np.array([sign * APART_MM, 0.0, 0.0]) + shift
         step = self._steps[before]
         if before == after and step.kind == "motion":
             way = (frame - step.start + 1) / (step.end - step.start + 1)

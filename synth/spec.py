@@ -113,6 +113,8 @@ class CardSpec(_Part):
     """How far it is turned in its plane, standard deviation, to 45 degrees."""
     hands: Literal["left", "right", "both", "any"] = "any"
     """Which hands hold a card."""
+    shown_mm: tuple[float, float, float] = (0.0, 60.0, 300.0)
+    """Where a card is shown, body frame: to the left, up, forwards; one hand holds it to its own side of that."""
     motion_mm: Annotated[float, Field(ge=40.0, le=250.0)] = 110.0
     """From the middle of a motion to its sides, 40 to 250 mm."""
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lightgesture.features.motion.shapes import Curve
 
@@ -19,7 +20,7 @@ from lightgesture.features.motion.shapes import Curve
 class MatchSettings:
     """What is taken for the same shape."""
 
-    points: int = 40
+    points: int = 32
     """Of both curves, evenly along the way."""
     progress: float = 1.2
     """How far apart, in spreads of the shape, its beginning and its end are by the third coordinate. Less: a point may
@@ -31,7 +32,7 @@ class MatchSettings:
     most_distance: float = 0.26
     """Root mean square distance of partners from which on it is another shape, in spreads of the shape. Less: tidier
     motions; more: what was not meant may be read."""
-    least_lead: float = 0.05
+    least_lead: float = 0.04
     """By how much the next shape must be farther, in spreads. Less: more is read, and more is taken for another."""
 
 
@@ -50,61 +51,66 @@ class Match:
 
 
 class ShapeBase:
-    """Shapes ready to be compared with. shapes: name -> the ways in which it may be drawn."""
+    """Shapes ready to be compared with. shapes: name -> the ways in which it may be drawn, one at least."""
 
     def __init__(self, shapes: Mapping[str, Sequence[Curve]], settings: MatchSettings | None = None) -> None:
         self.settings = settings or MatchSettings()
         self.names = tuple(shapes)
-        self._shapes = [
-            (name, _standard(curve, self.settings.points))
-            for name, curves in shapes.items()
-            for curve in curves
-        ]
+        self._owners = [name for name, curves in shapes.items() for _ in curves]
+        count = self.settings.points
+        self._shapes = np.array([_standard(curve, count) for curves in shapes.values() for curve in curves])
 
     def match(self, curve: Curve) -> Match:
         """The nearest shape to a line, float64 (n, 2), n from 2, which goes somewhere."""
-        drawn = _standard(curve, self.settings.points)
+        distances = closest_points(_standard(curve, self.settings.points), self._shapes, self.settings)
         nearest: dict[str, float] = {}
-        for name, shape in self._shapes:
-            distance = closest_points(drawn, shape, self.settings)
+        for name, distance in zip(self._owners, distances.tolist(), strict=True):
             nearest[name] = min(distance, nearest.get(name, np.inf))
         first, *rest = sorted(nearest, key=lambda name: nearest[name])
         return Match(first, nearest[first], nearest[rest[0]] if rest else np.inf)
 
 
-def closest_points(drawn: Curve, shape: Curve, settings: MatchSettings) -> float:
-    """Root mean square distance of partners, both ways, after `drawn` was turned, moved and scaled to fit `shape`.
+def closest_points(drawn: Curve, shapes: NDArray[np.float64], settings: MatchSettings) -> NDArray[np.float64]:
+    """Root mean square distance of partners, both ways, after `drawn` was turned, moved and scaled to fit each shape.
 
-    Both curves as `resampled`, about their middle and of unit spread, (n, 2).
+    drawn (n, 2), shapes (k, n, 2): as `resampled`, about their middle and of unit spread. Gives (k,).
     """
-    progress = np.linspace(0.0, settings.progress, len(shape))
+    progress = np.linspace(0.0, settings.progress, len(drawn))
     apart = (progress[:, None] - progress[None, :]) ** 2
-    moved, before = drawn, np.inf
+    moved = np.broadcast_to(drawn, shapes.shape)
+    best = np.full(len(shapes), np.inf)
+    rows = np.arange(len(shapes))[:, None]
     for _ in range(settings.rounds):
-        squares = ((moved[:, None] - shape[None, :]) ** 2).sum(axis=2) + apart
-        there, back = squares.argmin(axis=1), squares.argmin(axis=0)
-        distance = float(np.sqrt(0.5 * (squares.min(axis=1).mean() + squares.min(axis=0).mean())))
-        if before - distance < 1e-4:
+        squares = ((moved[:, :, None] - shapes[:, None, :]) ** 2).sum(axis=3) + apart
+        there, back = squares.argmin(axis=2), squares.argmin(axis=1)
+        mean = 0.5 * (squares.min(axis=2).mean(axis=1) + squares.min(axis=1).mean(axis=1))
+        before, best = best, np.minimum(best, np.sqrt(mean))
+        if (before - best < 1e-3).all():
             break
-        before = distance
-        source = np.concatenate([drawn, drawn[back]])
-        moved = _fitted(drawn, source, np.concatenate([shape[there], shape]), settings.most_turn_deg)
-    return min(distance, before)
+        source = np.concatenate([np.broadcast_to(drawn, shapes.shape), drawn[back]], axis=1)
+        target = np.concatenate([shapes[rows, there], shapes], axis=1)
+        moved = _fitted(drawn, source, target, settings.most_turn_deg)
+    return best
 
 
-def _fitted(curve: Curve, source: Curve, target: Curve, most_turn_deg: float) -> Curve:
-    """The curve moved as brings the points `source` nearest to `target`: a similarity with a bounded turn."""
-    from_middle, to_middle = source.mean(axis=0), target.mean(axis=0)
-    a, b = source - from_middle, target - to_middle
+def _fitted(
+    curve: Curve, source: NDArray[np.float64], target: NDArray[np.float64], most_turn_deg: float
+) -> NDArray[np.float64]:
+    """The curve moved, (k, n, 2), as brings the points `source` (k, m, 2) nearest to `target`: similarities with a
+    bounded turn and a scale from a half to two."""
+    from_middle, to_middle = source.mean(axis=1, keepdims=True), target.mean(axis=1, keepdims=True)
     # As complex numbers a similarity is one factor: its angle is the turn, its size the scale.
-    factor = complex((a * b).sum(), (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) / max(
-        float((a * a).sum()), 1e-9
-    )
+    a, b = _complex(source - from_middle), _complex(target - to_middle)
+    factor = (a.conj() * b).sum(axis=1) / np.maximum((np.abs(a) ** 2).sum(axis=1), 1e-9)
     limit = np.radians(most_turn_deg)
-    turn = float(np.clip(np.angle(factor), -limit, limit))
-    scale = float(np.clip(abs(factor), 0.5, 2.0))
-    rotation = scale * np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    return np.asarray((curve - from_middle) @ rotation.T + to_middle)
+    factor = np.clip(np.abs(factor), 0.5, 2.0) * np.exp(1j * np.clip(np.angle(factor), -limit, limit))
+    moved = _complex(curve - from_middle) * factor[:, None] + _complex(to_middle)
+    return np.stack([moved.real, moved.imag], axis=-1)
+
+
+def _complex(points: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Points (..., 2) as complex numbers."""
+    return np.asarray(points[..., 0] + 1j * points[..., 1], np.complex128)
 
 
 def resampled(curve: Curve, count: int) -> Curve:

@@ -29,9 +29,9 @@ class SegmentSettings:
 
     window_s: float = 0.2
     """Over which a tag is at rest or not. More: calmer, and every motion takes so much longer."""
-    rest: float = 0.35
+    rest: float = 0.3
     """Most that a tag goes in the window at rest: divers drift. More: a slow turn in a motion may seem its end."""
-    start: float = 0.5
+    start: float = 0.4
     """Least that it goes in the window for a motion to begin."""
     rest_s: float = 0.1
     """How long both are at rest, beyond the window, after a motion that is back where it began."""
@@ -110,7 +110,7 @@ class Segmenter:
             if self._phase != "absent":
                 self._keep_seen(time_s)
             return Moment("absent", reason="lost" if was_moving else None)
-        return self._follow(time_s)
+        return self._follow(time_s, left is not None and right is not None)
 
     def _keep_seen(self, time_s: float) -> None:
         """One tag is gone; the other may stay until it comes again."""
@@ -119,12 +119,13 @@ class Segmenter:
         for track, items in zip(self._tracks, kept, strict=True):
             track.extend(items)
 
-    def _follow(self, time_s: float) -> Moment:
-        """Both tags are in view."""
+    def _follow(self, time_s: float, is_whole: bool) -> Moment:
+        """Both tags are in view, or were a moment ago. is_whole: they are."""
         extent = max(self._extent(track, time_s - self.settings.window_s) for track in self._tracks)
         is_long_enough = all(time_s - track[0][0] >= self.settings.window_s for track in self._tracks)
         if self._phase == "moving":
-            return self._go_on(extent, time_s)
+            # A tag that is not seen just now is not at rest because of that.
+            return self._go_on(extent, time_s) if is_whole else Moment(self._phase)
         if self._phase == "resting" and extent > self.settings.start:
             return self._begin(time_s)
         if extent <= self.settings.rest and is_long_enough:

@@ -164,6 +164,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes; default 1")
     parser.add_argument("--only", choices=SIGNINGS, action="append", help="one way of signing")
+    parser.add_argument("--suite", choices=SUITES, action="append", help="one suite")
     parser.add_argument("--quick", action="store_true", help="every fifth clip")
     parser.add_argument(
         "--tag-detector", choices=("aruco", "apriltag"), default="aruco", help="what finds the tags"
@@ -173,7 +174,10 @@ def main() -> None:
     )
     args = parser.parse_args()
     takes = [
-        take for signing in args.only or SIGNINGS for suite in SUITES for take in takes_of(signing, suite)
+        take
+        for signing in args.only or SIGNINGS
+        for suite in args.suite or SUITES
+        for take in takes_of(signing, suite)
     ]
     folder = args.clips or cache_folder().parent / "cards"
     answers = []

@@ -13,6 +13,7 @@ import numpy as np
 
 from lightgesture.benchmarks.suite.scenarios import LAND, WATER, Scenario, scenarios, scene_spec
 from lightgesture.benchmarks.suite.takes import drawing_digest
+from lightgesture.fsm import load_grammar
 from lightgesture.results.atomic import replacing_folder
 from lightgesture.synth.cards import CARD_MM
 from lightgesture.synth.output import write_scene
@@ -40,6 +41,9 @@ TILTED_DEG: Final = 60.0
 HEIGHT: Final = 190.0
 """Above the shoulders, where a card hides the face, mm."""
 
+DRIFT_MM: Final = 50.0
+"""What divers drift: so near the edge of the picture a card is held that should still be seen."""
+
 HOLD: Final = 15
 """Frames, of no effect for cards."""
 
@@ -54,9 +58,9 @@ def card_spec(scenario: Scenario, signing: Signing) -> SceneSpec:
     elif scenario.difficulty == "face":
         cards["shown_mm"] = (0.0, HEIGHT, 320.0)
     elif scenario.difficulty == "out of view":
-        # The sheet ends where the picture does; the tag has 12 mm more. One hand holds it 110 mm to its own side.
+        # The sheet all but ends where the picture does. One hand holds it 110 mm to its own side.
         near = parts["diver"]["distance_mm"] - 300.0
-        edge = near / (2.0 * parts["camera"]["focal"]) - 0.5 * CARD_MM[0] - 110.0
+        edge = near / (2.0 * parts["camera"]["focal"]) - 0.5 * CARD_MM[0] - 110.0 - DRIFT_MM
         cards |= {"hands": "left", "shown_mm": (float(np.clip(edge, 0.0, 260.0)), 60.0, 300.0)}
     parts["cards"] |= cards
     if signing == "tag-motion":
@@ -80,7 +84,10 @@ def takes_of(signing: Signing, suite: str) -> list[CardTake]:
 
 def clip_of(take: CardTake, folder: Path) -> Path:
     """The video of a take, from `folder`, or rendered now, beside its truth (`.jsonl`)."""
-    recipe = f"{drawing_digest()} {take.spec.model_dump_json()}"
+    language = Path(load_grammar().file).read_text(encoding="utf-8")
+    recipe = (
+        f"{drawing_digest()} {language if take.signing == 'tag-motion' else ''} {take.spec.model_dump_json()}"
+    )
     place = folder / f"{take.signing}-{take.scenario.name}-{hashlib.sha256(recipe.encode()).hexdigest()[:16]}"
     if not place.is_dir():
         with replacing_folder(place) as building:

@@ -31,13 +31,14 @@ QUICK_STEP = 5
 
 @dataclass(frozen=True, slots=True)
 class CardAnswer:
-    """What came of one clip. tags, tags_read: corners in view by the truth, and those read with their id; tags_wrong:
-    read and not there. frame_ms: the median of a frame."""
+    """What came of one clip. readable: sentences that a flawless reader gets. tags, tags_read: in view by the truth,
+    and those read with their id; tags_wrong: read and not there. frame_ms: the median of a frame."""
 
     take: CardTake
     issued: tuple[str, ...]
     rejected: tuple[str, ...]
     words: tuple[str, ...]
+    readable: int
     tags: int
     tags_read: int
     tags_wrong: int
@@ -92,6 +93,7 @@ def run_take(take: CardTake, folder: Path, detector: DetectorName = "aruco") -> 
         issued=texts["instruction"],
         rejected=texts["rejected"],
         words=tuple(record["word"] for record in records if record["type"] == "word"),
+        readable=sum(record["type"] == "instruction" for record in truth),
         tags=sum(len(a) for a, _ in pairs),
         tags_read=sum(len(a & b) for a, b in pairs),
         # A card that is put away may still be read while the truth calls it too far turned.
@@ -128,6 +130,7 @@ def suite_table(answers: Sequence[CardAnswer], key: str) -> Table:
                 "front_end": signing,
                 key: name,
                 "sentences": len(group),
+                "readable": sum(answer.readable for answer in group),
                 "right": right,
                 "wrong": wrong,
                 "missed": missed,

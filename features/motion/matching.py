@@ -29,10 +29,10 @@ class MatchSettings:
     """Most that a shape may be turned, 0 to 90: beyond 45 a way to the side is one up."""
     rounds: int = 12
     """Most rounds of closest points."""
-    most_distance: float = 0.26
+    most_distance: float = 0.22
     """Root mean square distance of partners from which on it is another shape, in spreads of the shape. Less: tidier
     motions; more: what was not meant may be read."""
-    least_lead: float = 0.04
+    least_lead: float = 0.06
     """By how much the next shape must be farther, in spreads. Less: more is read, and more is taken for another."""
 
 

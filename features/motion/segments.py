@@ -194,6 +194,10 @@ class Segmenter:
             return Moment(self._phase, reason=self._pose.reason)
         still = max(settings.least, settings.still_share * max(sizes))
         left, right = (curve if size >= still else None for curve, size in zip(curves, sizes, strict=True))
+        if left is None and right is not None:
+            right = self._without_drift(right, RIGHT, curves[LEFT], LEFT)
+        elif right is None and left is not None:
+            left = self._without_drift(left, LEFT, curves[RIGHT], RIGHT)
         self._motion = Motion(left, right)
         return Moment(self._phase, self._motion)
 
@@ -207,6 +211,15 @@ class Segmenter:
         x, y = points[:, 0] * cosine + points[:, 1] * sine, points[:, 1] * cosine - points[:, 0] * sine
         # The picture's x runs to the diver's left, its y down.
         return np.column_stack([-x, -y])
+
+    def _without_drift(self, curve: Curve, hand: int, other: Curve, still: int) -> Curve:
+        """What a hand drew beyond how the whole body went, which the hand that was still tells."""
+        times, known = (
+            [at_s for at_s, _ in self._tracks[one] if at_s >= self._begun_s] or [self._begun_s]
+            for one in (hand, still)
+        )
+        drift = np.column_stack([np.interp(times, known, other[:, axis]) for axis in (0, 1)])
+        return np.asarray(curve - (drift - drift[0]))
 
     def _extent(self, track: deque[tuple[float, Tag]], since_s: float) -> float:
         """How far a tag went since then, sides."""

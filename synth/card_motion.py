@@ -38,6 +38,9 @@ HELD_MM: Final = (50.0, CARD_MM[1] - 0.5 * CARD_MM[0] + 104.0, 8.0)
 """The wrist from the tag's centre: to the hand's own side, down, and before the card. So the fingers cover its lower
 corner."""
 
+MOST_PITCH_DEG: Final = 25.0
+"""Most that a card leans forwards or back; the rest of a turn is to the side."""
+
 SLOPPY: Final = {"stretch": 0.12, "turn_deg": 6.0, "wobble": 0.06, "gap": 0.05, "round": 0.012}
 """How people draw, standard deviations per unit of looseness: width against height as a logarithm, the whole turned,
 waves as a share of the size, the end off the beginning likewise; and the share of the way over which corners are
@@ -103,7 +106,9 @@ class CardPerformance:
         angle, axis = self._spec.tilt_deg * np.sqrt(rng.uniform()), rng.uniform(0.0, 2 * np.pi)
         if step.kind in ("ready", "motion"):
             angle *= 0.4
-        tilt = angle * np.array([np.cos(axis), np.sin(axis)])
+        # Wrists bend less forwards and back than a card turns to the sides; the fingers would come over the tag.
+        pitch = float(np.clip(angle * np.sin(axis), -MOST_PITCH_DEG, MOST_PITCH_DEG))
+        tilt = np.array([np.copysign(np.sqrt(max(angle**2 - pitch**2, 0.0)), np.cos(axis)), pitch])
         roll = rng.normal(0.0, self._spec.roll_deg)
         return rng.normal(0.0, 20.0, 3), np.array([tilt[0], tilt[1], roll])
 

@@ -156,9 +156,9 @@ class State:
 class Notice:
     """A sign that changed nothing.
 
-    reason: "unknown_pair" (held, but no word: repeat it), "out_of_order" (a word that opens no sentence while none is
-    open), "confirm" (the end word is wanted again), "repeat" (the last sign was seen too badly: show it again) or "gap"
-    (frames are missing or show nothing; an open sentence was dropped).
+    reason: "unknown_pair" (held, but no word: repeat it), "two_cards" (two words at once: show one), "out_of_order" (a
+    word that opens no sentence while none is open), "confirm" (the end word is wanted again), "repeat" (the last sign
+    was seen too badly: show it again) or "gap" (frames are missing or show nothing; an open sentence was dropped).
     """
 
     type: Literal["notice"] = field(default="notice", init=False)

@@ -8,7 +8,7 @@ from lightgesture.fsm.reporter import Reporter, Timeline
 from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.rules.unread import UnreadSigning
 from lightgesture.fsm.sentence import Sentence, name_expected, needs_confirmation, objection
-from lightgesture.fsm.signs import Shown
+from lightgesture.fsm.signs import Shown, are_two_cards
 
 IDLE = "idle"
 COLLECTING = "collecting"
@@ -81,6 +81,9 @@ class Reader:
             self._unread.pass_over()
         if self.sentence is not None:
             self.sentence.has_unknown = True
+        if are_two_cards(pair):
+            self._reporter.notice("two_cards", f"{pair[0]} are two cards at once; show one")
+            return
         inside = self.sentence is not None and pair in self._grammar.idle_words
         place = "no word inside a sentence" if inside else "no word"
         self._reporter.notice("unknown_pair", f"{','.join(pair)} is {place}; repeat it")

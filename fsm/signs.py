@@ -33,6 +33,20 @@ UNSEEN: Final = Sign(seen=False)
 """A hand that is not in view."""
 
 
+BETWEEN_CARDS: Final = " and "
+"""Stands between the words of two cards that are shown at once; no word of a grammar has small letters."""
+
+
+def two_cards(one: str, other: str) -> Sign:
+    """What two cards with two words say: no word, and the diver is told so."""
+    return Sign(BETWEEN_CARDS.join(sorted((one, other))), is_word=True)
+
+
+def are_two_cards(shown: Shown) -> bool:
+    """Whether this is what `two_cards` says."""
+    return len(shown) == 1 and BETWEEN_CARDS in shown[0]
+
+
 @dataclass(frozen=True, slots=True)
 class Signs:
     """What the diver's own left and right hand show in one frame."""

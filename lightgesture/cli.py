@@ -42,6 +42,8 @@ COMMANDS = {
         "score the models and the whole chain on labelled pictures or rendered dives",
     ),
     "grammar": ("lightgesture.commands.grammar", "check, show, draw or explain a grammar file"),
+    "tags": ("lightgesture.commands.tags", "print the book of cards, and read it back"),
+    "motions": ("lightgesture.commands.motions", "shapes that moved cards draw: show them, record another"),
     "export": ("lightgesture.commands.export", "nets, trees and language as flat files for another language"),
     "synth": ("lightgesture.synth.command", "render dives of a synthetic diver with their truth"),
     "config": ("lightgesture.commands.config", "write a configuration file with every option"),
@@ -73,6 +75,8 @@ EXTRAS = {
     "serial": "mavlink",
     "fpdf": "print",
     "gpiozero": "lamp",
+    "pupil_apriltags": "tags",
+    "pypdfium2": "tags",
 }
 """Package that a command may lack, a later room or another's, to the extra that brings it."""
 

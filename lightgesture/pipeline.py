@@ -7,13 +7,15 @@ from copy import copy
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
-from typing import Any, Self
+from typing import Any, Final, Self
 
 from numpy.typing import NDArray
 
+from lightgesture.cards import FrontEndName, language_of_cards, make_card_reader
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.profile import load_profile
+from lightgesture.features.tags.detector import DetectorName
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd, StageClock
 from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
@@ -24,6 +26,9 @@ from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
+
+HANDS: Final = "hands"
+"""The front end that reads bare hands, the default."""
 
 
 class OneBlasThread:
@@ -52,17 +57,21 @@ class Pipeline:
 
     front, decoder: the two halves; None: what the options below make.
 
-    The front end that they make reads hands. model: "cnn", "svm" or the path of a model file. selector: "learned"
-    (locator and refiner) or "classical" (no net), see `features.find.selector`. profile: path of a colour profile of
-    the diver's hands, which replaces the map of skin colours; None for that map. mirrored: frames come from a selfie
-    camera. rotate: degrees, 0, 90, 180 or 270, by which frames are turned clockwise to stand upright.
+    front_end: what is read, "hands", "tags" (cards, see `cards`) or "tag-motion" (two cards that are moved). mirrored:
+    frames come from a selfie camera.
 
-    threshold: least probability of a token, 0 to 1; None for the reader's own.
+    Hands: model: "cnn", "svm" or the path of a model file. selector: "learned" (locator and refiner) or "classical" (no
+    net), see `features.find.selector`. profile: path of a colour profile of the diver's hands, which replaces the map
+    of skin colours; None for that map. threshold: least probability of a token, 0 to 1; None for the reader's own.
+    rotate: degrees, 0, 90, 180 or 270, by which frames are turned clockwise to stand upright.
+
+    Cards: tag_detector: "aruco" (OpenCV's) or "apriltag" (the extra `tags`, for murk). shapes: path of a file of shapes
+    for "tag-motion", beside those of the package.
 
     The decoder: rule: "frames", "seconds", "evidence" or "sentence", None for the grammar's own. hold: consecutive
     frames that a sign is held; hold_seconds: seconds instead; both None for the grammar's own. caution: of the rule
     "sentence", how sure a sentence must be, None for the grammar's own. grammar: path of a grammar file, None for the
-    bundled one.
+    bundled one. Cards count after the seconds that its [tags] or [motions] say, unless a rule or a hold is given.
 
     source: the name in the records. frames: give a frame record for each frame. debug: takes a picture of every stage
     of every frame.
@@ -70,7 +79,8 @@ class Pipeline:
     start_utc: the moment at which time_s is 0, if that is known; it may be set before any frame, and gives the records
     their `utc`.
     Raises lightgesture.models.ModelError, lightgesture.features.find.selector_file.SelectorError,
-    lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError or ValueError: one line each.
+    lightgesture.features.profile.ProfileError, lightgesture.fsm.GrammarError,
+    lightgesture.features.motion.shapes.ShapesError or ValueError: one line each.
     """
 
     def __init__(
@@ -78,12 +88,15 @@ class Pipeline:
         front: FrontEnd | None = None,
         decoder: Decoder | None = None,
         *,
+        front_end: FrontEndName = HANDS,
         model: str | os.PathLike[str] = DEFAULT,
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
         rotate: int = 0,
         threshold: float | None = None,
+        tag_detector: DetectorName = "aruco",
+        shapes: str | os.PathLike[str] | None = None,
         rule: Rule | None = None,
         hold: int | None = None,
         hold_seconds: float | None = None,
@@ -93,16 +106,19 @@ class Pipeline:
         frames: bool = True,
         debug: PictureSink | None = None,
     ) -> None:
+        of_hands = {
+            "model": model != DEFAULT,
+            "selector": selector != "learned",
+            "profile": profile is not None,
+            "threshold": threshold is not None,
+            "rotate": rotate != 0,
+        }
+        of_cards = {"tag_detector": tag_detector != "aruco", "shapes": shapes is not None}
         if front is not None:
-            of_hands = {
-                "model": model != DEFAULT,
-                "selector": selector != "learned",
-                "profile": profile is not None,
-                "mirrored": mirrored,
-                "rotate": rotate != 0,
-                "threshold": threshold is not None,
-            }
-            _refuse("front end", of_hands)
+            of_any = {"front_end": front_end != HANDS, "mirrored": mirrored}
+            _refuse("another front end", {**of_any, **of_hands, **of_cards})
+        else:
+            _refuse(f"the front end {front_end}", of_cards if front_end == HANDS else of_hands)
         if decoder is not None:
             of_decoder = {
                 "rule": rule,
@@ -111,10 +127,11 @@ class Pipeline:
                 "caution": caution,
                 "grammar": grammar,
             }
-            _refuse("decoder", {name: value is not None for name, value in of_decoder.items()})
+            _refuse("another decoder", {name: value is not None for name, value in of_decoder.items()})
         if decoder is None:
+            language = load_grammar(grammar)
             decoder = Decoder(
-                load_grammar(grammar),
+                language if front_end == HANDS else language_of_cards(language, front_end),
                 rule=rule,
                 hold=hold,
                 hold_seconds=hold_seconds,
@@ -123,6 +140,10 @@ class Pipeline:
             )
         elif source is not None:
             decoder = decoder.for_stream(source)
+        if front is None and front_end != HANDS:
+            front = make_card_reader(
+                decoder.grammar, front_end, detector=tag_detector, shapes=shapes, mirrored=mirrored
+            )
         if front is None:
             front = HandReader(
                 ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
@@ -279,7 +300,7 @@ class _ClosedFront(FrontEnd):
 
 
 def _refuse(half: str, is_given: Mapping[str, bool]) -> None:
-    """ValueError for options of a half of the pipeline that was given whole."""
+    """ValueError for options that were given and that this half of the pipeline does not have."""
     names = [name for name, given in is_given.items() if given]
     if names:
-        raise ValueError(f"{', '.join(names)}: of no effect beside another {half}; leave out either")
+        raise ValueError(f"{', '.join(names)}: of no effect beside {half}; leave out either")

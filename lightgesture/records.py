@@ -53,9 +53,30 @@ class Hand:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CardSign:
+    """One tag as it was read.
+
+    side: "left" or "right", the diver's own, where the card tells; else None. id: of its family. word: what the
+    grammar says it says, None: nothing. corners: x and y of the black square, source pixels, upper left, upper right,
+    lower right and lower left as it is printed. margin: half of the difference of its white and black cells, grey
+    levels, 0 to 127.
+    """
+
+    side: str | None
+    id: int
+    word: str | None
+    corners: tuple[tuple[float, float], ...]
+    margin: float
+
+    def to_dict(self) -> dict[str, Any]:
+        return {**asdict(self), "corners": [list(corner) for corner in self.corners]}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FrameRecord:
     """What was seen in one frame; `frame` and `time_s` (seconds) are None for a single picture.
 
+    signs: the tags where cards are read, which the record then has in place of hands; None: hands are read.
     probabilities: whether the record has those of the hands, which the rule "sentence" reads.
     """
 
@@ -65,17 +86,20 @@ class FrameRecord:
     time_s: float | None
     utc: str | None = None
     hands: tuple[Hand, ...] = ()
+    signs: tuple[CardSign, ...] | None = None
     probabilities: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        return {
+        record: dict[str, Any] = {
             "type": self.type,
             "source": self.source,
             "frame": self.frame,
             "time_s": self.time_s,
             "utc": self.utc,
-            "hands": [hand.to_dict(self.probabilities) for hand in self.hands],
         }
+        if self.signs is None:
+            return record | {"hands": [hand.to_dict(self.probabilities) for hand in self.hands]}
+        return record | {"signs": [sign.to_dict() for sign in self.signs]}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,6 +6,7 @@ camera has the right hand on image left.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -155,11 +156,18 @@ def dissolve(hand: HandImage, wrist: FloatArray, elbow: FloatArray, end: float) 
 
 
 def draw_diver(
-    picture: Float32, state: DiverState, look: DiverLook, camera: Camera, light: Light, water: Water | None
+    picture: Float32,
+    state: DiverState,
+    look: DiverLook,
+    camera: Camera,
+    light: Light,
+    water: Water | None,
+    held: Callable[[Float32, Float32], None] | None = None,
 ) -> tuple[list[DrawnHand], Float32]:
     """Draw the diver over a linear picture (in place), through `water` if given.
 
-    Returns the truth of both hands and the coverage (h, w) of the whole diver.
+    held: draws what the hands hold, before the body and behind the hands, into picture and coverage. Returns the truth
+    of both hands and the coverage (h, w) of the whole diver.
     """
     size = (picture.shape[1], picture.shape[0])
     wrists = (state.left.wrist, state.right.wrist)
@@ -168,6 +176,8 @@ def draw_diver(
     )
     picture *= 1.0 - cover[..., None]
     picture += radiance
+    if held is not None:
+        held(picture, cover)
     drawn = [(*draw_arm_hand(state, look, side, camera, light), side) for side in SIDES]
     for hand, distance, _ in sorted(drawn, key=lambda item: -item[1]):
         if water is not None:

@@ -17,9 +17,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.cards import FrontEndName, language_of_cards
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Decoder, Grammar, Signs
-from lightgesture.records import FrameRecord, Record
+from lightgesture.records import Record
 from lightgesture.results.atomic import replacing, replacing_folder
 from lightgesture.results.writers import open_json_lines
 from lightgesture.synth.scene import Scene, SceneFrame
@@ -83,7 +84,8 @@ def write_scene(
     path = folder / stem if pictures else folder / f"{stem}.mp4"
     sink = picture_folder(path) if pictures else video_writer(path, scene.spec.fps, scene.spec.size)
     with open_json_lines(folder / f"{stem}.jsonl") as truth, sink as put:
-        for frame, records in with_truth(render_frames(scene, jobs), scene.grammar, hold, path.name):
+        truth_of = with_truth(render_frames(scene, jobs), scene.grammar, hold, path.name, scene.spec.signing)
+        for frame, records in truth_of:
             put(frame.image)
             for record in records:
                 truth.write(record)
@@ -93,27 +95,36 @@ def write_scene(
 
 
 def with_truth(
-    frames: Iterable[SceneFrame], grammar: Grammar, hold: int, source: str | None = None
+    frames: Iterable[SceneFrame],
+    grammar: Grammar,
+    hold: int,
+    source: str | None = None,
+    signing: FrontEndName = "hands",
 ) -> Iterator[tuple[SceneFrame, list[Record]]]:
     """Each frame with its records: the frame's own first, then the words, instructions and rejections it completes.
 
-    hold: frames that a pair must be held. What ends with the last frame is given with it.
+    hold: frames that a pair must be held; cards are held for the seconds of the grammar. What ends with the last frame
+    is given with it.
     """
-    decoder = Decoder(grammar, hold=hold, source=source)
+    if signing == "hands":
+        decoder = Decoder(grammar, hold=hold, source=source)
+    else:
+        decoder = Decoder(language_of_cards(grammar, signing), source=source)
     waiting: tuple[SceneFrame, list[Record]] | None = None
     for frame in frames:
         if waiting is not None:
             yield waiting
-        waiting = frame, [replace(frame.record, source=source), *_events(decoder, frame.record)]
+        waiting = frame, [replace(frame.record, source=source), *_events(decoder, frame)]
     if waiting is not None:
         waiting[1].extend(event for event in decoder.finish() if event.type != DISPLAY_ONLY)
         yield waiting
 
 
-def _events(decoder: Decoder, record: FrameRecord) -> Iterator[Record]:
+def _events(decoder: Decoder, frame: SceneFrame) -> Iterator[Record]:
+    record = frame.record
     tokens = {hand.side: hand.token for hand in record.hands}
     time_s = record.time_s if record.time_s is not None else 0.0
-    signs = Signs.of_tokens(tokens.get("left"), tokens.get("right"))
+    signs = frame.signs or Signs.of_tokens(tokens.get("left"), tokens.get("right"))
     for event in decoder.step(signs, time_s, frame=record.frame):
         if event.type != DISPLAY_ONLY:
             yield event

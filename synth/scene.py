@@ -11,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.fsm import Grammar, load_grammar
+from lightgesture.fsm import Grammar, Signs, load_grammar
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import MOUTH, BodyLook, Camera, to_camera
 from lightgesture.synth.camera import CameraLook, Sensor
+from lightgesture.synth.card_act import CardAct
 from lightgesture.synth.diver import DiverLook, DiverState, DrawnHand, draw_diver, rotation_matrix
 from lightgesture.synth.hand import HandLook
 from lightgesture.synth.motion import Performance, Style
@@ -49,6 +50,8 @@ class SceneFrame:
 
     image: NDArray[np.uint8]
     record: FrameRecord
+    signs: Signs | None = None
+    """What a flawless reader tells the decoder, where it is not what the hands of the record show."""
 
 
 def seed_streams(seed: int) -> dict[str, np.random.Generator]:
@@ -63,12 +66,18 @@ class Scene:
     def __init__(self, spec: SceneSpec, grammar: Grammar | None = None) -> None:
         self.spec, self.grammar = spec, grammar or load_grammar()
         streams = seed_streams(spec.seed)
-        timing = Timing(spec.hold, spec.passage, spec.pause)
-        self.timeline: list[Hold] = make_timeline(self.grammar, spec.sentences, timing, streams["script"])
-        self.frame_count = self.timeline[-1].end
-        self._performance = Performance(
-            self.timeline, _style(spec), streams["motion"], self.frame_count / spec.fps
-        )
+        self.timeline: list[Hold] = []
+        self._cards: CardAct | None = None
+        if spec.signing == "hands":
+            timing = Timing(spec.hold, spec.passage, spec.pause)
+            self.timeline = make_timeline(self.grammar, spec.sentences, timing, streams["script"])
+            self.frame_count = self.timeline[-1].end
+            self._performance = Performance(
+                self.timeline, _style(spec), streams["motion"], self.frame_count / spec.fps
+            )
+        else:
+            self._cards = CardAct(spec, self.grammar, _style(spec), streams["script"], streams["motion"])
+            self.frame_count = self._cards.frame_count
         self._camera = Camera(spec.camera.focal * spec.size[0], (0.5 * spec.size[0], 0.5 * spec.size[1]))
         self._look = diver_look(spec.diver, streams["diver"])
         self._build_surroundings(streams)
@@ -110,6 +119,8 @@ class Scene:
         view: where the diver of the script is seen by a camera that moves; None from it: out of the picture.
         """
         time_s = index / self.spec.fps
+        if self._cards is not None:
+            return self._frame_of_cards(self._cards, index, time_s)
         state, moment = self._performance.state(index, time_s)
         picture = self._backdrop.frame(time_s)
         seen = state if view is None else view(state)
@@ -130,6 +141,15 @@ class Scene:
     def diver(self, index: int) -> DiverState:
         """Where the diver of the script is in a frame, before a camera that stays."""
         return self._performance.state(index, index / self.spec.fps)[0]
+
+    def _frame_of_cards(self, cards: CardAct, index: int, time_s: float) -> SceneFrame:
+        picture = self._backdrop.frame(time_s)
+        acted = cards.draw(picture, self._look, self._camera, self._light, self._water, index, time_s)
+        if self._water is not None:
+            self._draw_water_effects(picture, acted.cover, acted.state, time_s, self._water)
+        image = self._sensor.expose(picture, index, time_s)
+        record = FrameRecord(source=None, frame=index, time_s=time_s, signs=acted.cards)
+        return SceneFrame(image, record, acted.signs)
 
     def _draw_water_effects(
         self,

@@ -100,6 +100,25 @@ class DiverSpec(_Part):
     """Where the left wrist is held, body frame: to the left, up, forwards; the right one mirrored."""
 
 
+class CardSpec(_Part):
+    """Cards, where `SceneSpec.signing` says so."""
+
+    side_mm: Annotated[float, Field(ge=20.0, le=84.0)] = 80.0
+    """Of the black square of a tag, 20 to 84 mm."""
+    family: Literal["25h9", "36h10", "36h11"] = "36h11"
+    """Of the tags."""
+    tilt_deg: Annotated[float, Field(ge=0.0, le=75.0)] = 25.0
+    """Most that a card is turned away from the camera, to 75 degrees."""
+    roll_deg: Annotated[float, Field(ge=0.0, le=45.0)] = 8.0
+    """How far it is turned in its plane, standard deviation, to 45 degrees."""
+    hands: Literal["left", "right", "both", "any"] = "any"
+    """Which hands hold a card."""
+    shown_mm: tuple[float, float, float] = (0.0, 60.0, 300.0)
+    """Where a card is shown, body frame: to the left, up, forwards; one hand holds it to its own side of that."""
+    motion_mm: Annotated[float, Field(ge=40.0, le=250.0)] = 110.0
+    """From the middle of a motion to its sides, 40 to 250 mm."""
+
+
 class MotionSpec(_Part):
     """How the diver moves."""
 
@@ -139,6 +158,8 @@ class SceneSpec(_Part):
     """Of everything that is drawn by chance."""
     sentences: tuple[str, ...] = ("STOP HOVER 50 GO",)
     """What is signed, in the words of the language, or an activity such as "~wave"."""
+    signing: Literal["hands", "tags", "tag-motion"] = "hands"
+    """How: with bare hands, with cards, or with two cards that are moved, each for `hold` frames."""
     size: tuple[Annotated[int, Field(ge=64, le=4096)], Annotated[int, Field(ge=64, le=4096)]] = (640, 480)
     """Width and height, 64 to 4096 pixels."""
     fps: Annotated[float, Field(gt=0.0, le=240.0)] = 30.0
@@ -153,6 +174,7 @@ class SceneSpec(_Part):
     backdrop: BackdropSpec = BackdropSpec()
     room: RoomSpec = RoomSpec()
     diver: DiverSpec = DiverSpec()
+    cards: CardSpec = CardSpec()
     motion: MotionSpec = MotionSpec()
     camera: CameraSpec = CameraSpec()
 

@@ -31,20 +31,8 @@ BELOW = {
 
 HEAVY = frozenset(
     {
-        "av",
-        "dask",
-        "distributed",
-        "fpdf",
-        "gpiozero",
-        "matplotlib",
-        "mujoco",
-        "pydantic",
-        "pymavlink",
-        "rclpy",
-        "rosbags",
-        "rospy",
-        "sklearn",
-        "torch",
+        *("av", "dask", "distributed", "fpdf", "gpiozero", "matplotlib", "mujoco", "pupil_apriltags"),
+        *("pydantic", "pymavlink", "pypdfium2", "rclpy", "rosbags", "rospy", "sklearn", "torch"),
     }
 )
 """Libraries that only some uses need: imported in the function that uses them."""

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from lightgesture.fsm.language.cards import CANCEL, cancel_word, read_motions, read_tags
 from lightgesture.fsm.language.checks import (
     check_control,
     check_frame,
@@ -49,9 +50,10 @@ def compile_grammar(content: GrammarFile, file: str, defects: list[Defect]) -> G
     idle_pairs = _read_pairs("idle_pairs", content.idle_pairs, content.tokens, defects)
     pairs = _read_pairs("pairs", content.pairs, content.tokens, defects)
     menu_pairs = _read_menu(content, idle_pairs, defects)
-    vocabulary = Vocabulary.of(
-        [*content.idle_pairs.values(), *content.pairs.values()], content.sentinels.join
-    )
+    tags, motions = read_tags(content, defects), read_motions(content, defects)
+    cancel = cancel_word(content)
+    words = [*content.idle_pairs.values(), *content.pairs.values(), *([cancel] if cancel == CANCEL else [])]
+    vocabulary = Vocabulary.of(words, content.sentinels.join)
     check_sentinels(content, vocabulary, defects)
     check_limits(content, defects)
     check_parameters(content, defects)
@@ -86,11 +88,13 @@ def compile_grammar(content: GrammarFile, file: str, defects: list[Defect]) -> G
         dwell=DwellSettings(**content.dwell.model_dump()),
         sentence=SentenceSettings(**content.sentence.model_dump()),
         control=Control(
-            cancel=content.control.cancel,
+            cancel=cancel,
             kill=content.control.kill,
             confirm=frozenset(content.control.confirm),
             confirm_unknown=content.control.confirm_unknown,
         ),
+        tags=tags,
+        motions=motions,
     )
 
 

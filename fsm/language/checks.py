@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from lightgesture.fsm.language.cards import check_words
 from lightgesture.fsm.language.document import key_path
 from lightgesture.fsm.language.forms import Form, FormError, Vocabulary
 from lightgesture.fsm.language.grammar import Defect
@@ -114,6 +115,7 @@ def check_use(
             if word not in used | control:
                 remedy = "put it into a sentence of [[forms]] or remove the pair"
                 defects.append(Defect(key_path(name, key), f"no form uses '{word}'", remedy))
+    check_words(content, {word for word in used | control if word}, defects)
     for index, word in enumerate(content.sentinels.start):
         if word in used and word not in idle_words.values():
             reason = f"'{word}' cannot be signed: all its pairs mean something else while idle"

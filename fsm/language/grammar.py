@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from lightgesture.fsm.language.forms import Vocabulary
 from lightgesture.fsm.language.settings import Control, DwellSettings, Limits, Parameter, SentenceSettings
 from lightgesture.fsm.language.table import Table
 from lightgesture.fsm.signs import Pair
+
+STILL: Final = "still"
+"""Names the hand that does not move in a pair of [motions]."""
 
 
 class Defect(NamedTuple):
@@ -35,13 +38,38 @@ class GrammarError(ValueError):
         return cls(" ".join(": ".join(part for part in parts if part).split()))
 
 
+@dataclass(frozen=True, slots=True)
+class CardWords:
+    """[tags]: a card says its word. family: of AprilTag. hold_seconds: how long it is shown. words: id -> word."""
+
+    family: str
+    hold_seconds: float
+    words: Mapping[int, str]
+
+
+@dataclass(frozen=True, slots=True)
+class MotionWords:
+    """[motions]: two cards say a word by how they are moved.
+
+    left, right: ids of the tags in the diver's own hands. hold_seconds: how long they rest after a motion. words: what
+    the left hand's and the right hand's tag draw -> word.
+    """
+
+    family: str
+    left: int
+    right: int
+    hold_seconds: float
+    words: Mapping[Pair, str]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grammar:
     """A language, checked and compiled.
 
     file: where it was read. tokens: names of the hand shapes. idle_words, sentence_words, menu_words: pair -> word
     while no sentence is open, inside one, and in the menu. table: what may follow what. end: the word that closes a
-    sentence. programs, parameters: number -> those that the robot knows.
+    sentence. programs, parameters: number -> those that the robot knows. tags, motions: the words of cards and of moved
+    cards, None where the file has no such table.
     """
 
     file: str
@@ -58,3 +86,5 @@ class Grammar:
     dwell: DwellSettings
     sentence: SentenceSettings
     control: Control
+    tags: CardWords | None = None
+    motions: MotionWords | None = None

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
-from lightgesture.fsm.language.settings import DwellSettings, Limits, Rule, SentenceSettings
+from lightgesture.fsm.language.settings import CARD_HOLD_S, DwellSettings, Limits, Rule, SentenceSettings
 
 MAX_HOLD = 1000
 """Longest hold that a file may ask for, frames: 16 s at 60 frames a second."""
@@ -186,6 +186,27 @@ class SentenceTable(_Table):
     )
 
 
+class _WordsTable(BaseModel):
+    """A table whose other keys are signs that say words."""
+
+    model_config = ConfigDict(extra="allow", strict=True, frozen=True)
+    __pydantic_extra__: dict[str, Word]
+
+    family: Text = "36h11"
+    hold_seconds: float = Field(default=CARD_HOLD_S, ge=MIN_HOLD_S, le=MAX_HOLD_S, allow_inf_nan=False)
+
+
+class TagsTable(_WordsTable):
+    """[tags]: id = word"""
+
+
+class MotionsTable(_WordsTable):
+    """[motions]: "left hand,right hand" = word"""
+
+    left_id: int = Field(default=50, ge=0)
+    right_id: int = Field(default=51, ge=0)
+
+
 class GrammarFile(_Table):
     """The whole file."""
 
@@ -198,6 +219,8 @@ class GrammarFile(_Table):
     parameters: dict[Number, NamedParameter] = Field(default_factory=dict)
     control: ControlTable = Field(default_factory=ControlTable)
     menu: MenuTable | None = None
+    tags: TagsTable | None = None
+    motions: MotionsTable | None = None
     limits: LimitsTable = Field(default_factory=LimitsTable)
     dwell: DwellTable = Field(default_factory=DwellTable)
     sentence: SentenceTable = Field(default_factory=SentenceTable)
@@ -211,6 +234,8 @@ TABLES: dict[str, type[BaseModel]] = {
     "sentence": SentenceTable,
     "control": ControlTable,
     "menu": MenuTable,
+    "tags": TagsTable,
+    "motions": MotionsTable,
     "parameters": ParameterTable,
 }
 """The tables of a file, by their names."""

@@ -9,6 +9,10 @@ Rule = Literal["frames", "seconds", "evidence", "sentence"]
 
 SENTENCE: Final = "sentence"
 
+CARD_HOLD_S: Final = 0.3
+"""How long a card is shown, or two cards rest after a motion, to count, seconds. What is read of them is hardly ever
+wrong, so that it is less than a hand's hold. Less: a card counts that is only put away. More: slower."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:

@@ -135,6 +135,23 @@ class DecodeSettings(BaseModel):
         le=1,
         allow_inf_nan=False,
     )
+    front_end: Literal["hands", "tags", "tag-motion"] = _option(
+        "hands",
+        "what is read: bare hands, cards, or two cards that are moved",
+        "hands|tags|tag-motion",
+    )
+    tag_detector: Literal["aruco", "apriltag"] = _option(
+        "aruco",
+        "how cards are found: aruco (OpenCV) or apriltag (for murk; slower, needs lightgesture[tags])",
+        "aruco|apriltag",
+    )
+    shapes: str | None = _option(
+        None,
+        "shapes of your own for moved cards, from `motions record`",
+        "FILE",
+        kind="path",
+        min_length=1,
+    )
     mirrored: bool = _option(False, "the picture is mirrored, as that of a selfie camera")
     rotate: int = _option(
         0,

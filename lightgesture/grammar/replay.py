@@ -22,7 +22,7 @@ def explain_records(grammar: Grammar, path: str) -> list[str]:
     count = 0
     for record in _frames(path):
         count += 1
-        events = decoder.step(_signs(record["hands"]), record["time_s"], record["frame"])
+        events = decoder.step(_signs(record), record["time_s"], record["frame"])
         lines += [f"{record['time_s']:.2f} s  {text}" for text in tell(events)]
         if any(event.type in ("instruction", "rejected") for event in events):
             lines += _readings(decoder)
@@ -62,13 +62,17 @@ def _frames(path: str) -> Iterator[dict[str, Any]]:
 
 
 def _is_whole(record: dict[str, Any]) -> bool:
-    return record["time_s"] is not None and all("probabilities" in hand for hand in record["hands"])
+    is_whole = all("probabilities" in hand for hand in record.get("hands", ()))
+    return record["time_s"] is not None and is_whole
 
 
-def _signs(hands: list[dict[str, Any]]) -> Signs:
-    """The signs of the hands of a record."""
+def _signs(record: dict[str, Any]) -> Signs:
+    """The signs of the hands, or of the cards, of a record."""
+    if "signs" in record:
+        words = [card["word"] for card in record["signs"] if card["word"] is not None]
+        return Signs(*(Sign(word, is_word=True) for word in dict.fromkeys(words[:2])))
     signs = {
         hand["side"]: Sign(hand["token"], hand["confidence"], hand["probabilities"], True, hand["reason"])
-        for hand in hands
+        for hand in record["hands"]
     }
     return Signs(signs.get("left", UNSEEN), signs.get("right", UNSEEN))

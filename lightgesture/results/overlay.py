@@ -18,7 +18,7 @@ from lightgesture.features.image import as_bgr8, turned
 from lightgesture.features.types import Box, Image
 from lightgesture.fsm import Instruction, Notice, Rejected, State
 from lightgesture.fsm.events import Growth
-from lightgesture.records import FrameRecord, Hand, Record, VehicleRecord
+from lightgesture.records import CardSign, FrameRecord, Hand, Record, VehicleRecord
 from lightgesture.results.words import rejected, unread
 
 Place = Literal["below", "beside", "over"]
@@ -55,11 +55,12 @@ class Message:
 class OverlayState:
     """All that an overlay shows.
 
-    hands: of the latest frame record. sentence: the words so far, empty while idle. dwell: the hold that grows.
+    hands, signs: of the latest frame record. sentence: the words so far, empty while idle. dwell: the hold that grows.
     message: None where none is in view. time_s: of the latest record, seconds. log: the last outcomes, newest first.
     """
 
     hands: tuple[Hand, ...] = ()
+    signs: tuple[CardSign, ...] = ()
     sentence: str = ""
     dwell: Growth | None = None
     message: Message | None = None
@@ -96,7 +97,7 @@ def advance(state: OverlayState, records: Iterable[Record]) -> OverlayState:
             state = replace(state, time_s=time_s)
         match record:
             case FrameRecord():
-                state = replace(state, hands=record.hands)
+                state = replace(state, hands=record.hands, signs=record.signs or ())
             case State():
                 state = replace(state, sentence=record.sentence, dwell=record.dwell)
             case Instruction():
@@ -125,6 +126,8 @@ def render(image_bgr: Image, state: OverlayState, place: Place = "over", rotate:
     pen = Pen(picture)
     for hand in state.hands:
         draw_hand(pen, hand, turn_box(hand.box, size, rotate))
+    for card in state.signs:
+        _draw_card(pen, card)
     if place == "over":
         _draw_sentence(pen, state, pen.height - 2 * pen.row)
         if state.message is not None:
@@ -195,6 +198,16 @@ def draw_hand(pen: Pen, hand: Hand, box: Box) -> None:
     pen.label(f"{hand.side[0].upper()}: {what}", box, colour)
 
 
+def _draw_card(pen: Pen, card: CardSign) -> None:
+    outline = np.rint(np.array(card.corners)).astype(np.int32)
+    colour = GREEN if card.word is not None else AMBER
+    width = max(1, round(pen.letter / 6))
+    cv2.polylines(pen.picture, [outline.reshape(-1, 1, 2)], True, colour, width, cv2.LINE_AA)
+    left, top, wide, tall = cv2.boundingRect(outline)
+    side = "" if card.side is None else f"{card.side[0].upper()}: "
+    pen.label(one_line(f"{side}{card.word or f'tag {card.id}'}"), (left, top, wide, tall), colour)
+
+
 def _draw_sentence(pen: Pen, state: OverlayState, top: int) -> None:
     """Two rows from `top` on: the sentence so far with the time, and the hold that grows."""
     pen.panel(0, top, pen.width, 2 * pen.row)
@@ -216,9 +229,7 @@ def _draw_dwell(pen: Pen, dwell: Growth | None, top: int) -> None:
     cv2.rectangle(pen.picture, (left, low), (right, high), GREY, 1)
     if dwell is not None:
         meaning = dwell.word if dwell.word is not None else "no word"
-        label = pen.fit(
-            one_line(f"{dwell.pair[0]},{dwell.pair[1]}: {meaning}"), right - left - 2 * pen.margin
-        )
+        label = pen.fit(one_line(f"{','.join(dwell.pair)}: {meaning}"), right - left - 2 * pen.margin)
         pen.write(label, left + pen.margin, top, WHITE)
 
 

@@ -1,10 +1,11 @@
 """Records in plain words, for people."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 
 from lightgesture.console import one_line
 from lightgesture.fsm import Instruction, Notice, Rejected
-from lightgesture.records import FrameRecord, Hand, Record, SummaryRecord, VehicleRecord
+from lightgesture.records import CardSign, FrameRecord, Hand, Record, SummaryRecord, VehicleRecord
 from lightgesture.results.words import unread
 
 
@@ -45,7 +46,9 @@ def describe(record: Record) -> str | None:
 
 
 def describe_hands(record: FrameRecord) -> list[str]:
-    """A line for each hand of a single picture, the diver's own right hand first."""
+    """A line for each hand of a single picture, the diver's own right hand first, or for each card."""
+    if record.signs is not None:
+        return [_card(card) for card in record.signs] or ["  no card found"]
     hands = sorted(record.hands, key=lambda hand: hand.side, reverse=True)
     return [_hand(hand) for hand in hands] or ["  no hand found"]
 
@@ -64,6 +67,20 @@ def _summary(record: SummaryRecord) -> str:
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def _card(card: CardSign) -> str:
+    side = math.sqrt(abs(_area(card.corners)))
+    place = f"{side:.0f} pixels wide, margin {card.margin:.0f}"
+    return f"  tag {card.id}: {card.word or 'no word of the grammar'}  ({place})"
+
+
+def _area(corners: Sequence[tuple[float, float]]) -> float:
+    """Of a polygon, by the shoelace formula; its sign tells which way round it goes."""
+    following = [*corners[1:], corners[0]]
+    return 0.5 * sum(
+        x * next_y - next_x * y for (x, y), (next_x, next_y) in zip(corners, following, strict=True)
+    )
 
 
 def _hand(hand: Hand) -> str:

@@ -47,6 +47,9 @@ LEAST_SPAN_S: Final = 0.1
 _HANDS = {"left": ("#1f77b4", 0.15), "right": ("#d95f02", -0.15)}
 """Side to the colour of its dots and how far they stand above the row of their token."""
 
+_CARD = ("#1f77b4", 0.0)
+"""The same of cards, which either hand may hold."""
+
 _WORD, _GOOD, _BAD = "#444444", "#2a9d4a", "#c0392b"
 _LEVELS = 3
 
@@ -75,12 +78,9 @@ class Timeline:
             case FrameRecord(time_s=float() as time_s):
                 self.end_s = max(self.end_s, time_s)
                 for hand in record.hands:
-                    times, rows = self.hands[hand.side]
-                    times.append(time_s)
-                    token = hand.token or NOT_READ
-                    if token not in self.rows:
-                        self.rows.append(token)
-                    rows.append(self.rows.index(token))
+                    self._put(hand.side, hand.token or NOT_READ, time_s)
+                for card in record.signs or ():
+                    self._put(card.side or "", card.word or NOT_READ, time_s)
             case Word():
                 self.words.append(record)
             case Instruction():
@@ -93,6 +93,14 @@ class Timeline:
                 self.repeats.append(record)
             case _:
                 pass
+
+    def _put(self, side: str, sign: str, time_s: float) -> None:
+        """A dot in the row of a sign, which is added where it is new."""
+        times, rows = self.hands.setdefault(side, ([], []))
+        times.append(time_s)
+        if sign not in self.rows:
+            self.rows.append(sign)
+        rows.append(self.rows.index(sign))
 
 
 @contextmanager
@@ -133,9 +141,10 @@ def draw_timeline(timeline: Timeline, name: str, path: Path) -> None:
 
 def _draw_signs(axes: "Axes", timeline: Timeline) -> None:
     for side, (times, rows) in timeline.hands.items():
-        colour, shift = _HANDS[side]
+        colour, shift = _HANDS.get(side, _CARD)
         heights = [row + shift for row in rows]
-        axes.scatter(times, heights, s=9, c=colour, marker="s", linewidths=0, label=f"{side} hand")
+        label = f"{side} hand" if side else "cards"
+        axes.scatter(times, heights, s=9, c=colour, marker="s", linewidths=0, label=label)
     axes.set_yticks(range(len(timeline.rows)), timeline.rows)
     axes.set_ylim(-0.6, len(timeline.rows) - 0.4)
     axes.grid(axis="y", color="#e5e5e5")

@@ -72,6 +72,7 @@ class Board:
             "sentence": "",
             "dwell": None,
             "hands": [],
+            "signs": None,
             "ended": None,
             "expected": [] if expect is None else expect("", "idle"),
         }
@@ -195,7 +196,8 @@ class Board:
         self._state["source"] = record.get("source")
         self._state["time_s"] = record.get("time_s", self._state.get("time_s"))
         if kind == "frame":
-            self._state["hands"] = record["hands"]
+            shown = {"hands": record.get("hands", []), "signs": record.get("signs")}
+            self._state |= shown
         elif kind == "state":
             if self._expect is not None and record["sentence"] != self._state["sentence"]:
                 self._state["expected"] = self._expect(record["sentence"], record["state"])
@@ -203,7 +205,7 @@ class Board:
         elif kind == "heartbeat":
             self._state |= {name: record[name] for name in ("frames", "dropped", "ms_per_frame")}
         elif kind == "summary":
-            self._state |= {"ended": record["status"], "hands": [], "dwell": None}
+            self._state |= {"ended": record["status"], "hands": [], "signs": None, "dwell": None}
         elif kind in ENTRIES:
             self._entry_count += 1
             self._entries.append({**record, "number": self._entry_count, "wall_s": round(time.time(), 3)})

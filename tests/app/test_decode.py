@@ -61,6 +61,9 @@ def test_plain_words(run, make_video):
 def test_options_reach_the_pipeline(run, make_folder, fake):
     run("decode", make_folder("frames", 2), "--hold", 3, "--mirrored", "--grammar", "my.toml", "--fps", 4)
     assert fake.made[-1].options == {
+        "front_end": "hands",
+        "tag_detector": "aruco",
+        "shapes": None,
         "model": "cnn",
         "selector": "learned",
         "profile": None,
@@ -81,6 +84,9 @@ def test_options_reach_the_pipeline(run, make_folder, fake):
     assert (options["rule"], options["caution"], options["threshold"]) == ("sentence", 2.0, 0.5)
     run("decode", make_folder("frames", 2))
     assert fake.made[-1].options == {
+        "front_end": "hands",
+        "tag_detector": "aruco",
+        "shapes": None,
         "model": "cnn",
         "selector": "learned",
         "profile": None,

@@ -49,6 +49,7 @@ def test_every_option_may_stand_in_the_file(config):
         'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nmavlink-system = 7\n'
         'obey = "/v.toml"\nanswer = ["motion"]\nhook = ["say hello"]\n'
         'web = 8080\nweb-host = "::1"\n'
+        'front-end = "tags"\ntag-detector = "apriltag"\nshapes = "/s.json"\n'
         "insecure = true\ngive-up = 90.0\nrecursive = true\njoin = true\n"
     )
     settings = load("--config", path)
@@ -62,6 +63,9 @@ def test_every_option_may_stand_in_the_file(config):
         "rule": "sentence",
         "caution": 1.5,
         "threshold": 0.6,
+        "front_end": "tags",
+        "tag_detector": "apriltag",
+        "shapes": "/s.json",
         "mirrored": True,
         "rotate": 180,
         "fps": 12.5,

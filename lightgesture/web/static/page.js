@@ -34,6 +34,15 @@ function hand(item) {
   return item.side + " hand: " + read;
 }
 
+function card(item) {
+  return (item.side ? item.side + " card: " : "card: ") + (item.word ?? "tag " + Number(item.id) + ", no word");
+}
+
+function seen(state) {
+  if (state.signs) return state.signs.length ? state.signs.map(card).join("; ") : "no cards";
+  return state.hands.length ? state.hands.map(hand).join("; ") : "no hands";
+}
+
 function showState(state) {
   if (run !== null && state.run !== run) { at("entries").replaceChildren(); at("last").hidden = true; showPicture(); }
   run = state.run;
@@ -43,7 +52,7 @@ function showState(state) {
   const dwell = state.dwell;
   put("dwell-label", dwell ? dwell.pair.join(" and ") + ": " + (dwell.word ?? "no word") : "no sign is held");
   at("dwell").value = dwell ? dwell.progress : 0;
-  put("hands", state.hands.length ? state.hands.map(hand).join("; ") : "no hands");
+  put("hands", seen(state));
   const numbers = [];
   if (state.frames !== undefined) numbers.push(state.frames + " pictures decoded", state.dropped + " passed over",
     state.ms_per_frame.toFixed(1) + " ms a picture");

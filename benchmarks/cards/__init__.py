@@ -1,0 +1,1 @@
+"""Cards and moved cards: the suite of sentences, tags against size and blur, and the study of three ways."""

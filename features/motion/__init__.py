@@ -1,0 +1,1 @@
+"""Tracks of moved tags to the names of the shapes that they draw."""

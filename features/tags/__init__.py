@@ -1,0 +1,1 @@
+"""Pictures to AprilTags: their ids, their corners and how clearly they stand out."""

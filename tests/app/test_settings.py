@@ -46,7 +46,8 @@ def test_every_option_may_stand_in_the_file(config):
         'frames = true\nout = "/o"\ndebug-dir = "/d"\nquiet = true\n'
         'annotate = true\nplot = true\njobs = 3\ncluster = "tcp://h:1"\n'
         'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
-        'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nmavlink-system = 7\nobey = "/v.toml"\nanswer = ["motion"]\nhook = ["say hello"]\n'
+        'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\n'
+        'mavlink-system = 7\nobey = "/v.toml"\nanswer = ["motion"]\nhook = ["say hello"]\n'
         'web = 8080\nweb-host = "::1"\n'
         "insecure = true\ngive-up = 90.0\nrecursive = true\njoin = true\n"
     )

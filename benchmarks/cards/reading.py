@@ -16,7 +16,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.benchmarks.tables import Cell, Table, to_text
+from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.features.tags.detector import Grey, make_detector
 from lightgesture.features.tags.tag import dictionary
 from lightgesture.features.types import Image
@@ -236,19 +236,28 @@ def main() -> None:
         "--data", type=Path, metavar="DIR", help="folder of real pictures; without it distances alone"
     )
     parser.add_argument("--count", type=int, default=60, metavar="N", help="tags a condition; default 60")
+    parser.add_argument(
+        "--every", type=int, default=1, metavar="N", help="look for false tags in one picture of N"
+    )
     args = parser.parse_args()
     cv2.setNumThreads(1)
-    tables = [distance_table(max(args.count // 6, 1))]
-    if args.data is not None:
+    for table in _tables(args.data, args.count, args.every):
+        print(table.to_text() + "\n", flush=True)
+
+
+def _tables(data: Path | None, count: int, every: int) -> Iterator[Table]:
+    """What is asked for, each as soon as it is made."""
+    if data is not None:
         suffixes = (".jpg", ".jpeg", ".png")
         groups = {
-            name: sorted(file for file in (args.data / name).rglob("*") if file.suffix.lower() in suffixes)
+            name: sorted(file for file in (data / name).rglob("*") if file.suffix.lower() in suffixes)
             for name in ("divers", "negatives")
         }
+        yield false_table({name: files[::every] for name, files in groups.items()}, 10)
         shown = [read_picture(str(file)) for file in groups["divers"][:: max(len(groups["divers"]) // 24, 1)]]
         pictures = [np.asarray(cv2.resize(picture, SIZE), np.uint8) for picture in shown]
-        tables += [conditions_table(pictures, args.count), false_table(groups, 10)]
-    print(to_text(tables))
+        yield conditions_table(pictures, count)
+    yield distance_table(max(count // 6, 1))
 
 
 if __name__ == "__main__":

@@ -60,7 +60,7 @@ def _there_and_back(x: float, y: float) -> list[Curve]:
 
 
 def _mirrored(curve: Curve) -> Curve:
-    return np.asarray(curve * np.array([-1.0, 1.0]), np.float64)
+    return np.asarray(curve * np.array([-1.0, 1.0]))
 
 
 _ZIGZAG: Final = np.array([(0, 0), (0.4, 1), (0.8, 0), (1.2, 1), (1.6, 0), (0, 0)], np.float64)

@@ -1,6 +1,6 @@
 """Rendered divers with cards: what is drawn is what the truth says, and what the reader reads."""
 
-import itertools
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -50,7 +50,7 @@ def test_cards_come_one_after_the_other():
     steps = card_steps(GRAMMAR, ["STOP HOVER 50 GO"], TIMING, np.random.default_rng(0))
     assert [step.word for step in steps if step.kind == "card"] == ["STOP", "HOVER", "5", "AND", "0", "GO"]
     assert [step.id for step in steps if step.kind == "card"] == [0, 4, 25, 3, 20, 2]
-    assert all(before.end <= after.start for before, after in itertools.pairwise(steps))
+    assert all(before.end <= after.start for before, after in pairwise(steps))
     assert (steps[0].kind, steps[-1].kind) == ("lowered", "lowered")
 
 

@@ -244,16 +244,16 @@ class FakeAutopilot:
         if message.command in self.results:
             results = self.results[message.command]
             if results:
-                self._acknowledge(message, results.pop(0))
+                self.acknowledge(message, results.pop(0))
         elif message.command == common.MAV_CMD_DO_SET_MODE and self.knows_set_mode:
             is_entered = int(message.param2) != 16 or self.has_position
-            self._acknowledge(message, 0 if is_entered else 4)
+            self.acknowledge(message, 0 if is_entered else 4)
             if is_entered and self.takes_mode:
                 self.mode = int(message.param2)
         else:
-            self._acknowledge(message, 3)
+            self.acknowledge(message, 3)
 
-    def _acknowledge(self, message, result, component=None, **changes):
+    def acknowledge(self, message, result, component=None, **changes):
         fields = {"target_system": message.get_srcSystem(), "target_component": message.get_srcComponent()}
         ack = common.MAVLink_command_ack_message(message.command, result, 0, 0, **{**fields, **changes})
         self.send(ack, component=message.target_component or 1)

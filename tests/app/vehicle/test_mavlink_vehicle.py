@@ -60,7 +60,7 @@ def test_a_heartbeat_is_asked_for_where_a_mode_is_awaited(boat, autopilot, monke
             autopilot.beat()
         elif message.command == common.MAV_CMD_DO_SET_MODE:
             autopilot.mode = int(message.param2)
-            autopilot._acknowledge(message, 0)
+            autopilot.acknowledge(message, 0)
 
     monkeypatch.setattr(autopilot, "_on_command_long", on_command)
     assert boat.order(SetMode(names=("ALT_HOLD",)), seconds=1).state == "accepted"

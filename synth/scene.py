@@ -67,7 +67,7 @@ class Scene:
         self.spec, self.grammar = spec, grammar or load_grammar()
         streams = seed_streams(spec.seed)
         self.timeline: list[Hold] = []
-        self._cards: CardAct | None = None
+        self.cards: CardAct | None = None
         if spec.signing == "hands":
             timing = Timing(spec.hold, spec.passage, spec.pause)
             self.timeline = make_timeline(self.grammar, spec.sentences, timing, streams["script"])
@@ -76,8 +76,8 @@ class Scene:
                 self.timeline, _style(spec), streams["motion"], self.frame_count / spec.fps
             )
         else:
-            self._cards = CardAct(spec, self.grammar, _style(spec), streams["script"], streams["motion"])
-            self.frame_count = self._cards.frame_count
+            self.cards = CardAct(spec, self.grammar, _style(spec), streams["script"], streams["motion"])
+            self.frame_count = self.cards.frame_count
         self._camera = Camera(spec.camera.focal * spec.size[0], (0.5 * spec.size[0], 0.5 * spec.size[1]))
         self._look = diver_look(spec.diver, streams["diver"])
         self._build_surroundings(streams)
@@ -119,8 +119,8 @@ class Scene:
         view: where the diver of the script is seen by a camera that moves; None from it: out of the picture.
         """
         time_s = index / self.spec.fps
-        if self._cards is not None:
-            return self._frame_of_cards(self._cards, index, time_s)
+        if self.cards is not None:
+            return self._frame_of_cards(self.cards, index, time_s)
         state, moment = self._performance.state(index, time_s)
         picture = self._backdrop.frame(time_s)
         seen = state if view is None else view(state)

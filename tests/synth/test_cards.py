@@ -42,7 +42,7 @@ def read(image):
 
 def step_of(scene, kind):
     """The middle frame of the first step of a kind."""
-    step = next(step for step in scene._cards.steps if step.kind == kind)
+    step = next(step for step in scene.cards.steps if step.kind == kind)
     return (step.start + step.end) // 2
 
 
@@ -120,7 +120,7 @@ def _unseen(scene, index):
     from lightgesture.fsm import Sign, Signs
     from lightgesture.records import FrameRecord
 
-    step = next((step for step in scene._cards.steps if step.start <= index < step.end), None)
+    step = next((step for step in scene.cards.steps if step.start <= index < step.end), None)
     word = step.word if step is not None and step.kind == "card" else None
     signs = Signs() if word is None else Signs(left=Sign(word, is_word=True))
     record = FrameRecord(source=None, frame=index, time_s=index / 10.0, signs=())

@@ -45,6 +45,11 @@ class TagSettings:
     """Side below which a tag that is followed is looked at enlarged, pixels."""
 
 
+LEAST_WINDOW_PX: Final = 7
+WINDOW_STEP_PX: Final = 8
+"""Windows of the thresholds, 7, 15 and 23 pixels. OpenCV's own, 3, 13 and 23, lose tags whose cells are 5 pixels wide
+where the card is no brighter than what is behind it."""
+
 NEAR_WINDOW_PX: Final = 53
 """Largest window of the thresholds where a tag was lost, pixels; OpenCV's own largest is 23."""
 
@@ -91,7 +96,9 @@ class ArucoTags:
         near.adaptiveThreshConstant = settings.near_threshold
         near.adaptiveThreshWinSizeMax = NEAR_WINDOW_PX
         near.minOtsuStdDev = settings.least_margin / 2
+        whole.adaptiveThreshWinSizeStep = WINDOW_STEP_PX
         for one in (whole, near):
+            one.adaptiveThreshWinSizeMin = LEAST_WINDOW_PX
             # The white edge of a card and its tag are one candidate to OpenCV, and else gone with the edge.
             one.minDistanceToBorder = 0
         self._whole, self._near = (cv2.aruco.ArucoDetector(codes, one) for one in (whole, near))

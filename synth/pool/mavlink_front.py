@@ -95,7 +95,7 @@ class MavlinkFront:
                 self._take_sticks(message)
             case "SET_MODE":
                 is_done = self.pilot.set_mode(message.custom_mode)
-                self._acknowledge(message, SET_MODE_MESSAGE, self._accepted_if(is_done))
+                self._answer_command(message, SET_MODE_MESSAGE, self._accepted_if(is_done))
             case "COMMAND_LONG":
                 params = tuple(getattr(message, f"param{number}") for number in range(1, 8))
                 self._take_command(message, params)
@@ -122,9 +122,9 @@ class MavlinkFront:
         component = self._components.get(message.target_component)
         if component is not None:
             result = component.command(message.command, params, self._now_s)
-            self._acknowledge(message, message.command, result, component)
+            self._answer_command(message, message.command, result, component)
         elif message.target_component in (0, AUTOPILOT):
-            self._acknowledge(message, message.command, self._do(message.command, params))
+            self._answer_command(message, message.command, self._do(message.command, params))
 
     def _do(self, command: int, params: tuple[float, ...]) -> int:
         """Do a command to the autopilot; the number of the result."""
@@ -172,7 +172,7 @@ class MavlinkFront:
         dialect = self.dialect
         return int(dialect.MAV_RESULT_ACCEPTED if is_done else dialect.MAV_RESULT_FAILED)
 
-    def _acknowledge(
+    def _answer_command(
         self, message: Any, command: int, result: int, sender: CameraComponent | Follower | None = None
     ) -> None:
         packer = self._packer if sender is None else sender.packer

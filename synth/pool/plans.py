@@ -28,12 +28,12 @@ STUDY_SEED: Final = 2018
 FPS: Final = 15.0
 """Pictures a second of the vehicle's camera."""
 SWIM_MPS: Final = 0.12
-"""How fast the diver swims away once a sentence that is to be followed was signed, metres a second."""
+"""How fast the diver swims away once the vehicle follows, metres a second."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """One trial: its name, what is signed, in which scene, and how fast the diver swims away after it (m/s)."""
+    """One trial: its name, what is signed, in which scene; how fast the diver swims away once the vehicle follows, m/s."""
 
     name: str
     sentences: tuple[str, ...]

@@ -100,6 +100,7 @@ class Trial:
         signed = next(hold for hold in self._scene.timeline if hold.pair is not None)
         self._course = Course(plan, SETTLE_S + signed.start / plan.scene.fps, self._vehicle.program_items)
         self._executor = Executor(profile, self._told, self._note, self._clock)
+        self._swims_from_s: float | None = None
         self._diver = self._where(0.0)
         self._vehicle.front.follower.diver = lambda: self._diver
         self._beat_s = 0.0
@@ -179,9 +180,11 @@ class Trial:
         )
 
     def _place(self, now_s: float) -> DiverPlace:
-        """Of the script, whose diver swims away when it is over."""
-        over_s = now_s - SETTLE_S - self._scene.frame_count / self._plan.scene.fps
-        return DiverPlace(START_DEPTH_M, max(over_s, 0.0) * self._plan.swim_mps)
+        """Of the script, whose diver swims away once the vehicle follows."""
+        if self._swims_from_s is None and self._vehicle.front.follower.is_following:
+            self._swims_from_s = now_s
+        swum_s = 0.0 if self._swims_from_s is None else now_s - self._swims_from_s
+        return DiverPlace(START_DEPTH_M, swum_s * self._plan.swim_mps)
 
     def _where(self, now_s: float) -> tuple[float, float, float]:
         frame = max(round((now_s - SETTLE_S) * self._plan.scene.fps), 0)

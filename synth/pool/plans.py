@@ -33,7 +33,8 @@ SWIM_MPS: Final = 0.12
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """One trial: its name, what is signed, in which scene; how fast the diver swims away once the vehicle follows, m/s."""
+    """One trial: its name, what is signed, in which scene; how fast the diver swims away once the vehicle follows,
+    m/s."""
 
     name: str
     sentences: tuple[str, ...]

@@ -2,8 +2,8 @@
 
 folds: five nets, each without a fifth of the sources. subjects: people held out of sources that are trained on, the
 paper's kind of test. outline: with and without the outline's numbers. augmentation: one alteration left out at a
-time. sources: few people or many. sizes: three nets. steps: the learning curve. places: real divers of places that
-nothing was learnt of. Every row is one training of
+time. sources: few people or many. sizes: three nets. steps: the learning curve. places: second looks at real
+divers of places that nothing was learnt of. Every row is one training of
 `train cnn` with a seed, from one pool (augmentation draws one for each row); what is done lies in the pool's folder,
 and the same command goes on there.
 """
@@ -91,6 +91,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         parsers[kind].add_argument(
             "--svm-centres", type=positive, default=1000, metavar="N", help="of the SVM (default 1000)"
         )
+    parsers["places"].add_argument(
+        "--first",
+        default="cnn",
+        metavar="NPZ",
+        help="model whose small net is kept (default: the bundled one)",
+    )
+    parsers["places"].add_argument(
+        "--group",
+        action="append",
+        metavar="PLACE[,PLACE]",
+        help="places that are held out together (repeatable; default: each alone)",
+    )
     parsers["augmentation"].add_argument(
         "--only", choices=list(POOLS), action="append", help="this row alone (repeatable)"
     )

@@ -13,6 +13,10 @@ TARGETS = {
         "the classifier of hand patches without a net; needs no torch",
     ),
     "cnn": ("lightgesture.training.commands.train_cnn", "the small net that reads hand patches"),
+    "look": (
+        "lightgesture.training.commands.train_look",
+        "a larger net for what a small net doubts; the small one is kept",
+    ),
     "regions": (
         "lightgesture.training.commands.train_regions",
         "the selector that tells hands from the rest of a picture",

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lightgesture._version import __version__
 from lightgesture.features.outline.contours import contour_length
-from lightgesture.models.calibration import softmax
 from lightgesture.models.cnn import CnnClassifier, CnnModel
 from lightgesture.training.card import held_out_section, make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
@@ -82,7 +81,12 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     import torch
 
     from lightgesture.training.nets.architectures import multiply_adds
-    from lightgesture.training.nets.second_look import first_teacher, second_section, with_second_look
+    from lightgesture.training.nets.second_look import (
+        answers_of_both,
+        first_teacher,
+        second_section,
+        with_second_look,
+    )
 
     started = time.monotonic()
     rows = read_rows(training.data, training.without)
@@ -104,11 +108,11 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     answers = hands.answered(CnnClassifier(model).scores(hands.patches))
     if len(answers.truth) >= LEAST_FITTED:
         model = replace(model, temperature=fit_temperature(answers.probabilities, answers.truth))
-    held_out = replace(answers, probabilities=softmax(answers.probabilities, model.temperature))
     if training.teachers:
         how = replace(net_settings(training), steps=training.teacher_steps)
-        second = first_teacher(learnt.samples, learnt.scale, how, training.seed, folder)
-        model, held_out = with_second_look(model, second, hands, held_out)
+        second = first_teacher(learnt.samples, how, training.seed, folder, progress)
+        model = with_second_look(model, second, hands)
+    held_out = answers_of_both(model, hands)
     in_floats = hands.answered(learnt.scores(hands.patches, CONTOUR))
     card = {
         "name": "cnn",

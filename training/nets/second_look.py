@@ -1,14 +1,16 @@
 """The larger net of a hand model: the first of those that taught the small one, in integers. Needs torch."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
+from lightgesture.errors import UsageError
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.models.calibration import softmax
-from lightgesture.models.cnn import CnnClassifier, CnnModel, SecondLook, weighed
+from lightgesture.models.cnn import PATCH, CnnClassifier, CnnModel, SecondLook, weighed
 from lightgesture.training.nets.architectures import multiply_adds
 from lightgesture.training.nets.hand_net import NetSettings, OutlineScale, to_integers
 from lightgesture.training.nets.hand_samples import HandSamples
@@ -16,33 +18,47 @@ from lightgesture.training.nets.teachers import teacher
 from lightgesture.training.pool.kept_sources import LEAST_FITTED, HeldOut, HeldOutHands
 from lightgesture.training.temperature import fit_temperature
 
+Progress = Callable[[str], None]
+
 SURE: Final = 0.9
 """Probability of its likeliest class from which the small net is not doubted."""
 
 
+NO_OUTLINE: Final = OutlineScale(np.zeros(0, np.float32), np.zeros(0, np.float32))
+"""Larger nets look at patches alone."""
+
+
 def first_teacher(
-    samples: HandSamples, scale: OutlineScale, settings: NetSettings, seed: int, folder: Path
+    samples: HandSamples, settings: NetSettings, seed: int, folder: Path, progress: Progress
 ) -> IntegerNetwork:
-    """The first teacher, which lies trained in `folder`. scale: of the small net's outline, which no teacher sees."""
-    return to_integers(teacher(samples, settings, seed, folder), samples, scale, settings, seed)
-
-
-def with_second_look(
-    model: CnnModel, network: IntegerNetwork, hands: HeldOutHands, first: HeldOut
-) -> tuple[CnnModel, HeldOut]:
-    """The model with the larger net, its temperature fitted on hands that were kept out, and both nets' answers.
-
-    first: answers of the small net, calibrated.
-    """
-    model = replace(model, second=SecondLook(network, 1.0, SURE))
-    scores = CnnClassifier(model).second_scores(hands.patches)
-    temperature = fit_temperature(scores, first.truth) if len(first.truth) >= LEAST_FITTED else 1.0
-    both = weighed(first.probabilities, softmax(scores, temperature))
-    doubted = first.probabilities.max(axis=1, keepdims=True) < SURE
-    return (
-        replace(model, second=SecondLook(network, temperature, SURE)),
-        replace(first, probabilities=np.where(doubted, both, first.probabilities)),
+    """The first teacher; goes on where it was left in `folder`."""
+    return to_integers(
+        teacher(samples, settings, seed, folder, progress), samples, NO_OUTLINE, settings, seed
     )
+
+
+def with_second_look(model: CnnModel, network: IntegerNetwork, hands: HeldOutHands) -> CnnModel:
+    """The model with the larger net, its temperature fitted on hands that were kept out.
+
+    Raises UsageError where the two do not read the same patches.
+    """
+    if dict(network.inputs) != {PATCH: (model.patch.size, model.patch.size, 3)}:
+        raise UsageError("the larger net reads other patches than the small one; train both together")
+    model = replace(model, second=SecondLook(network, 1.0, SURE))
+    truth = hands.truth
+    scores = CnnClassifier(model).second_scores(hands.patches)
+    temperature = fit_temperature(scores, truth) if len(truth) >= LEAST_FITTED else 1.0
+    return replace(model, second=SecondLook(network, temperature, SURE))
+
+
+def answers_of_both(model: CnnModel, hands: HeldOutHands) -> HeldOut:
+    """Calibrated answers of the small net, and of both where it is in doubt."""
+    classifier = CnnClassifier(model)
+    first = softmax(classifier.scores(hands.patches), model.temperature)
+    if model.second is None:
+        return hands.answered(first)
+    both = weighed(first, softmax(classifier.second_scores(hands.patches), model.second.temperature))
+    return hands.answered(np.where(first.max(axis=1, keepdims=True) < model.second.sure, both, first))
 
 
 def second_section(model: CnnModel) -> dict[str, Any] | None:

@@ -74,10 +74,12 @@ def teach(
     return answers
 
 
-def teacher(samples: HandSamples, settings: NetSettings, seed: int, folder: Path) -> TorchNetwork:
-    """The first of the nets that taught, read from `folder`, where `teach` left it."""
+def teacher(
+    samples: HandSamples, settings: NetSettings, seed: int, folder: Path, progress: Callable[[str], None]
+) -> TorchNetwork:
+    """The first of the nets that teach, from `folder`, where `teach` left it, or trained on."""
     net = make_net(teacher_nodes(len(samples.classes)), samples.size, 0, seed)
-    return train_hand_net(net, samples, None, settings, seed, folder / "teacher1.pt", lambda _: None)
+    return train_hand_net(net, samples, None, settings, seed, folder / "teacher1.pt", progress)
 
 
 def answers_of(net: TorchNetwork, samples: HandSamples, settings: NetSettings) -> NDArray[np.float32]:

@@ -1,0 +1,65 @@
+"""`lightgesture train look`: a larger net for what a model doubts."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+from lightgesture.config.parsers import positive, whole
+from lightgesture.errors import UsageError
+from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
+from lightgesture.training.commands.train import PRECISIONS, model_path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of the command."""
+    add_data_arguments(parser)
+    parser.add_argument(
+        "--first",
+        default="cnn",
+        metavar="NPZ",
+        help="model whose small net is kept (default: the bundled one)",
+    )
+    parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
+    parser.add_argument(
+        "--steps", type=positive, default=5000, metavar="N", help="of the larger net (default: 5000)"
+    )
+    parser.add_argument(
+        "--precision", choices=PRECISIONS, default="float32", help="of the training, see train cnn"
+    )
+    parser.add_argument(
+        "--synthetic",
+        type=whole,
+        default=12000,
+        metavar="N",
+        help="rendered hands beside the real ones (default: 12000)",
+    )
+    parser.add_argument(
+        "--jobs", type=positive, default=1, metavar="N", help="processes that draw (default: 1)"
+    )
+
+
+def run(args: argparse.Namespace) -> int:
+    """Train, write the model and its card, and tell the scores of sources held out."""
+    from lightgesture.models.loading import SHIPPED
+    from lightgesture.training.nets.cnn import CnnTraining
+    from lightgesture.training.nets.look import train_look_to_file
+
+    if args.data is None:
+        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    out, first = model_path(args.out), SHIPPED.get(args.first, Path(args.first))
+    training = CnnTraining(
+        data=Path(args.data),
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        divers=Path(args.divers) if args.divers else None,
+        without=tuple(args.without),
+        seed=args.seed,
+        jobs=args.jobs,
+        teacher_steps=args.steps,
+        precision=args.precision,
+    )
+    copies = training.pool.copies if args.copies is None else args.copies
+    training = replace(training, pool=replace(training.pool, copies=copies, rendered=args.synthetic))
+    return train_and_tell(
+        lambda progress: train_look_to_file(training, first, out, progress), out, args.quiet
+    )

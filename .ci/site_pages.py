@@ -18,6 +18,8 @@ PAGES = {"README.md": "index.md", "benchmarks/README.md": "benchmarks.md", "CHAN
 """Document of the repository to its page."""
 
 LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)((?:#[^)\s]*)?\))")
+SOURCE = re.compile(r"(<img src=\")([^\"#]+)(\")")
+"""Pictures of a given width, which Markdown has no words for."""
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -45,7 +47,7 @@ def on_page_markdown(markdown: str, page: Page, **_: object) -> str:
             return before.lstrip("![").removesuffix("](")
         return before + posixpath.relpath(page_of(place), posixpath.dirname(page.file.src_uri) or ".") + after
 
-    return LINK.sub(change, markdown)
+    return SOURCE.sub(change, LINK.sub(change, markdown))
 
 
 def place_of(page: str) -> str:
@@ -62,5 +64,6 @@ def page_of(place: str) -> str:
 
 def _targets(document: str) -> list[str]:
     text = (ROOT / document).read_text(encoding="utf-8")
-    links = [target for _, target, _ in LINK.findall(text) if "://" not in target]
+    found = [*LINK.findall(text), *SOURCE.findall(text)]
+    links = [target for _, target, _ in found if "://" not in target]
     return [posixpath.normpath(posixpath.join(posixpath.dirname(document), target)) for target in links]

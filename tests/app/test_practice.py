@@ -39,7 +39,7 @@ class Diver:
     """Signs to a decoder, ten frames a second, and gives what comes of it to a session."""
 
     def __init__(self, tasks, grammar=GRAMMAR, limit_s=60.0):
-        self.decoder = Decoder(grammar, hold_seconds=HOLD_S)
+        self.decoder = Decoder(grammar, rule="seconds", hold_seconds=HOLD_S)
         self.session = Session(tasks, grammar, limit_s, is_revised=False)
         self.frame = 0
 

@@ -11,7 +11,7 @@ from lightgesture.models.loading import DEFAULT, SHIPPED, Classifier
 from lightgesture.training.samples import in_order
 
 Draw = Callable[[str, int], np.ndarray]
-LARGEST = {"cnn": 150_000, "svm": 2_000_000}
+LARGEST = {"cnn": 500_000, "svm": 2_000_000}
 
 
 @pytest.fixture(scope="module", params=sorted(SHIPPED))

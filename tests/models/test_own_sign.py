@@ -94,7 +94,7 @@ def test_the_documented_commands_lead_from_folders_to_instructions(
         more = QUICK[kind] if arguments[0] == "train" else ()
         assert main([*arguments, *more]) == 0, arguments
         said[arguments[0]] = capsys.readouterr().out
-    assert said["recognize"].count("five") == 2
+    assert said["recognize"].count("hand: five") == 2
     assert "STOP HOVER 50 GO" in said["decode"]
     assert main(["decode", "dive.mp4", "--model", "signs.npz", "--jobs", "1"]) == 2  # by the bundled grammar
     assert "tokens of the grammar that the model cannot read: 0, 1, 2" in capsys.readouterr().err

@@ -163,7 +163,7 @@ def test_other_steps_are_told_with_what_to_do(
     )
     (line,) = capsys.readouterr().err.splitlines()
     assert (
-        "holds parts of another training (copies 1 and not 24, centres 50 and not 2000, steps 10 and not 20)"
+        "holds parts of another training (copies 1 and not 16, centres 50 and not 2000, steps 10 and not 20)"
         in line
     )
     assert f"cp {tmp_path / 'mine.parts'}/patches.*" in line

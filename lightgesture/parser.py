@@ -33,7 +33,9 @@ class Parser(argparse.ArgumentParser):
         end = "" if message.endswith("?") else ";"
         raise UsageError(f"{message}{end} see {self.prog} --help")
 
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+    def parse_known_args(  # pyright: ignore[reportIncompatibleMethodOverride]
+        self, args: Any = None, namespace: Any = None
+    ) -> Any:
         """As in the library, with the values put in that options may go without."""
         words = [] if args is None else list(args)
         return super().parse_known_args(list(self._completed(words)), namespace)

@@ -67,7 +67,7 @@ class CardPerformance:
         self._body = Drift(rng, 6, DRIFT_HZ)
         self._hands = Drift(rng, 6, 4.0 * DRIFT_HZ)
         grips: list[Grip] = ["left", "right", "both"]
-        self._grips = [grips[int(number)] for number in rng.integers(3, size=len(self._steps))]
+        self._grips: list[Grip] = [grips[int(number)] for number in rng.integers(3, size=len(self._steps))]
         self._shape = token_pose("grip", rng, style.looseness)
 
     def state(self, frame: int, time_s: float) -> tuple[DiverState, tuple[CardState, ...], Step | None]:

@@ -59,7 +59,7 @@ def draw_study(trials: Sequence[Trial], path: Path) -> None:
     written."""
     from matplotlib.figure import Figure
 
-    skills = [skill for skill in USERS if any(trial.skill == skill for trial in trials)]
+    skills: list[Skill] = [skill for skill in USERS if any(trial.skill == skill for trial in trials)]
     figure = Figure(figsize=(9.0, 2.6 * len(skills) + 0.6), layout="constrained")
     axes = figure.subplots(len(skills), 2, squeeze=False, sharex=True)
     for row, skill in enumerate(skills):

@@ -34,8 +34,9 @@ from lightgesture.training.pool.patch_pool import rows_without
 class FindsNothing:
     """Stands in the place of a selector where hands are read in given boxes alone."""
 
-    def read(self, _image: Image) -> list[Reading]:
-        """Nothing."""
+    def read(self, image: Image) -> list[Reading]:
+        """Nothing, whatever the picture shows."""
+        del image
         return []
 
 
@@ -81,7 +82,8 @@ def _second_look(
         "training": repr(replace(training, jobs=1)),
         "rows": sha256(np.packbits(rows).tobytes()).hexdigest(),
     }
-    parts = checkpoint_folder(folder / f"look_{'_'.join(names)}", request)
+    digest = sha256(repr(request).encode()).hexdigest()[:12]
+    parts = checkpoint_folder(folder / digest, request)
     samples = HandSamples(study.pool, rows, study.classes, MARGIN)
     settings = net_settings(training)
     larger = first_teacher(samples, settings, training.seed, parts, lambda text: say(f"{names}: {text}"))

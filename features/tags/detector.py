@@ -153,7 +153,8 @@ class ArucoTags:
     ) -> list[Tag]:
         """Tags of a window of the picture, whose upper left corner is at `corner`, looked at `scale` times as large."""
         if scale != 1.0:
-            window = np.asarray(cv2.resize(window, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC))
+            larger = cv2.resize(window, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
+            window = np.asarray(larger, np.uint8)
         corners, ids, _ = detector.detectMarkers(window)
         if ids is None:
             return []

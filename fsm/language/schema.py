@@ -190,7 +190,7 @@ class _WordsTable(BaseModel):
     """A table whose other keys are signs that say words."""
 
     model_config = ConfigDict(extra="allow", strict=True, frozen=True)
-    __pydantic_extra__: dict[str, Word]
+    __pydantic_extra__: dict[str, Word]  # pyright: ignore[reportIncompatibleVariableOverride]
 
     family: Text = "36h11"
     hold_seconds: float = Field(default=CARD_HOLD_S, ge=MIN_HOLD_S, le=MAX_HOLD_S, allow_inf_nan=False)

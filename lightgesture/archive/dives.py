@@ -51,7 +51,7 @@ def write_dives(folder: Path) -> None:
         replacing(folder / NAME) as temporary,
         open(temporary, "w", encoding="utf-8", errors="backslashreplace", newline="") as stream,
     ):
-        table = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+        table: csv.DictWriter[str] = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         table.writeheader()
         for path in tables:
             table.writerows(_rows(path))

@@ -79,7 +79,8 @@ def _draw_pages(path: Path) -> Iterator[Grey]:
         if len(document) > MOST_PAGES:
             raise InputError(f"{path}: has {len(document)} pages, at most {MOST_PAGES} are read; split it")
         for page in document:
-            drawn = page.render(scale=DOTS_PER_MM * 25.4 / 72.0, grayscale=True)
+            # The package calls it a whole number and takes any.
+            drawn = page.render(scale=DOTS_PER_MM * 25.4 / 72.0, grayscale=True)  # pyright: ignore[reportArgumentType]
             yield np.ascontiguousarray(drawn.to_numpy().reshape(drawn.height, drawn.width), np.uint8)
     finally:
         document.close()

@@ -76,7 +76,8 @@ class Overlay:
     """
 
     def __init__(self, place: Place = "over", rotate: int = 0) -> None:
-        self._place, self._rotate = place, rotate
+        self._place: Place = place
+        self._rotate = rotate
         self.state = OverlayState()
 
     def draw(self, image_bgr: Image, records: Iterable[Record]) -> Image:

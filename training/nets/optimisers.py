@@ -63,7 +63,7 @@ class NetOptimiser:
 
 def _matrices(net: TorchNetwork) -> list[Tensor]:
     inner = [node.name for node in net.nodes if node.op in ("conv", "dense") and node.name not in net.outputs]
-    return [net.layers[name].weight for name in inner]
+    return [weights for name in inner if isinstance(weights := net.layers[name].weight, Tensor)]
 
 
 def _rows(weights: Tensor) -> Tensor:

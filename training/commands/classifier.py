@@ -2,12 +2,16 @@
 
 import argparse
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lightgesture.config.parsers import whole
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
+
+if TYPE_CHECKING:
+    from lightgesture.training.nets.cnn import CnnTraining
 
 
 def add_data_arguments(parser: argparse.ArgumentParser) -> None:
@@ -62,6 +66,30 @@ def kept_text(out: Path) -> str:
     if not folder.is_dir():
         return "nothing was drawn or learnt yet"
     return f"{folder} keeps what was drawn and learnt; the same command goes on there"
+
+
+def net_training(args: argparse.Namespace) -> "CnnTraining":
+    """The training of a net on the hands that the arguments name. UsageError: they name none."""
+    from lightgesture.training.nets.cnn import CnnTraining
+
+    if args.data is None:
+        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    training = CnnTraining(
+        data=Path(args.data),
+        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
+        scenes=Path(args.scenes) if args.scenes else None,
+        divers=Path(args.divers) if args.divers else None,
+        without=tuple(args.without),
+        seed=args.seed,
+        jobs=args.jobs,
+        precision=args.precision,
+    )
+    pool = training.pool
+    if args.copies is not None:
+        pool = replace(pool, copies=args.copies)
+    if args.synthetic is not None:
+        pool = replace(pool, rendered=args.synthetic)
+    return replace(training, pool=pool)
 
 
 def train_and_tell(

@@ -2,12 +2,11 @@
 
 import argparse
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lightgesture.config.parsers import whole
 from lightgesture.errors import UsageError
-from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
+from lightgesture.training.commands.classifier import add_data_arguments, net_training, train_and_tell
 from lightgesture.training.commands.train import PRECISIONS, model_path
 
 if TYPE_CHECKING:
@@ -66,31 +65,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _training(args: argparse.Namespace) -> "CnnTraining":
-    from lightgesture.training.nets.cnn import CnnTraining
-
-    if args.data is None:
-        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    training = net_training(args)
     for name in ("steps", "teacher_steps", "jobs", "copies"):
         if getattr(args, name) == 0:
             raise UsageError(f"--{name.replace('_', '-')} is 0; it must be 1 or more")
-    training = CnnTraining(
-        data=Path(args.data),
-        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
-        scenes=Path(args.scenes) if args.scenes else None,
-        divers=Path(args.divers) if args.divers else None,
-        without=tuple(args.without),
-        seed=args.seed,
-        jobs=args.jobs,
-        size=args.size,
-        contours=args.outline,
-        precision=args.precision,
-    )
+    training = replace(training, size=args.size, contours=args.outline)
     for name in ("steps", "teachers", "teacher_steps"):
         if (value := getattr(args, name)) is not None:
             training = replace(training, **{name: value})
-    pool = training.pool
-    if args.copies is not None:
-        pool = replace(pool, copies=args.copies)
-    if args.synthetic is not None:
-        pool = replace(pool, rendered=args.synthetic)
-    return replace(training, pool=pool)
+    return training

@@ -5,8 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lightgesture.config.parsers import positive, whole
-from lightgesture.errors import UsageError
-from lightgesture.training.commands.classifier import add_data_arguments, train_and_tell
+from lightgesture.training.commands.classifier import add_data_arguments, net_training, train_and_tell
 from lightgesture.training.commands.train import PRECISIONS, model_path
 
 
@@ -41,25 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Train, write the model and its card, and tell the scores of sources held out."""
     from lightgesture.models.loading import SHIPPED
-    from lightgesture.training.nets.cnn import CnnTraining
     from lightgesture.training.nets.look import train_look_to_file
 
-    if args.data is None:
-        raise UsageError("nothing to train on; name a manifest or a folder of pictures with --data")
+    training = replace(net_training(args), teacher_steps=args.steps)
     out, first = model_path(args.out), SHIPPED.get(args.first, Path(args.first))
-    training = CnnTraining(
-        data=Path(args.data),
-        backgrounds=tuple(Path(folder) for folder in args.backgrounds),
-        scenes=Path(args.scenes) if args.scenes else None,
-        divers=Path(args.divers) if args.divers else None,
-        without=tuple(args.without),
-        seed=args.seed,
-        jobs=args.jobs,
-        teacher_steps=args.steps,
-        precision=args.precision,
-    )
-    copies = training.pool.copies if args.copies is None else args.copies
-    training = replace(training, pool=replace(training.pool, copies=copies, rendered=args.synthetic))
     return train_and_tell(
         lambda progress: train_look_to_file(training, first, out, progress), out, args.quiet
     )

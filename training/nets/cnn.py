@@ -1,7 +1,7 @@
 """From a manifest to a hand net and its card: the training of the CNN from end to end."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,10 +21,10 @@ from lightgesture.training.pool.kept_sources import (
     held_out_hands,
     kept_out,
 )
-from lightgesture.training.pool.originals import PoolSettings, read_originals
+from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_kinds import CONTOUR, MARGIN, PATCH, SMALLEST_HAND
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool, rows_without
-from lightgesture.training.pool.samples import read_rows, rows_digest
+from lightgesture.training.pool.samples import HandRow, read_rows, rows_digest
 from lightgesture.training.samples import in_order
 from lightgesture.training.temperature import fit_temperature
 from lightgesture.training.time_left import tenths
@@ -89,20 +89,9 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     )
 
     started = time.monotonic()
-    rows = read_rows(training.data, training.without)
-    classes = in_order(row.token for row in rows)
-    request = {
-        "training": repr(replace(training, jobs=1)),
-        "rows": rows_digest(rows),
-        "version": __version__,
-    }
-    folder = checkpoint_folder(out, request)
-    progress(f"reading {len(rows)} hands")
-    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
-    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
-    kept = kept_out(originals.hands)
-    sources = np.array([hand.source for hand in originals.hands])
-    learnt = learn(pool, rows_without(pool, sources, kept), classes, training, folder, progress)
+    drawn = draw(training, out, progress)
+    rows, originals, pool, kept, classes = drawn.rows, drawn.originals, drawn.pool, drawn.kept, drawn.classes
+    learnt = learn(pool, drawn.learnt_from, classes, training, drawn.folder, progress)
     model = in_integers(learnt, training)
     hands = held_out_hands(model, originals, pool, kept)
     answers = hands.answered(CnnClassifier(model).scores(hands.patches))
@@ -110,7 +99,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
         model = replace(model, temperature=fit_temperature(answers.probabilities, answers.truth))
     if training.teachers:
         how = replace(net_settings(training), steps=training.teacher_steps)
-        second = first_teacher(learnt.samples, how, training.seed, folder, progress)
+        second = first_teacher(learnt.samples, how, training.seed, drawn.folder, progress)
         model = with_second_look(model, second, hands)
     held_out = answers_of_both(model, hands)
     in_floats = hands.answered(learnt.scores(hands.patches, CONTOUR))
@@ -139,6 +128,47 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
     write_cnn_model(model, out)
     write_json(card, out.with_suffix(".json"))
     return card
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawn:
+    """What a training learns from. folder: of its parts. kept: bool (n,), hands that are kept from the nets."""
+
+    rows: Sequence[HandRow]
+    originals: Originals
+    pool: PatchPool
+    kept: NDArray[np.bool_]
+    folder: Path
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Of the hands, in their usual order."""
+        return in_order(row.token for row in self.rows)
+
+    @property
+    def learnt_from(self) -> NDArray[np.bool_]:
+        """Rows of the pool that nets see, bool."""
+        sources = np.array([hand.source for hand in self.originals.hands])
+        return rows_without(self.pool, sources, self.kept)
+
+
+def draw(training: CnnTraining, out: Path, progress: Progress, **more: str) -> Drawn:
+    """Read the hands and draw the pool, or take what lies in the folder beside `out`.
+
+    more: what else tells this training from others. Raises InputError, UsageError.
+    """
+    rows = read_rows(training.data, training.without)
+    request = {
+        "training": repr(replace(training, jobs=1)),
+        "rows": rows_digest(rows),
+        "version": __version__,
+        **more,
+    }
+    folder = checkpoint_folder(out, request)
+    progress(f"reading {len(rows)} hands")
+    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
+    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
+    return Drawn(rows, originals, pool, kept_out(originals.hands), folder)
 
 
 def learn(

@@ -96,9 +96,14 @@ class HandSamples:
         inner = slice(self._margin, self._margin + self.size)
         return standardised(np.asarray(self._pool.patches[self._rows[first:last]][:, inner, inner]))
 
+    def draw_rows(self, random: Random, count: int) -> NDArray[np.int64]:
+        """Which of the chosen rows a batch is made of."""
+        drawn = np.searchsorted(self._cumulative, random.random(count))
+        return np.asarray(np.minimum(drawn, len(self._rows) - 1), np.int64)
+
     def draw(self, random: Random, count: int) -> HandBatch:
         """`count` patches."""
-        drawn = np.minimum(np.searchsorted(self._cumulative, random.random(count)), len(self._rows) - 1)
+        drawn = self.draw_rows(random, count)
         rows = self._rows[drawn]
         seen = standardised(self._shifted(rows, random))
         self._erase(seen, random)

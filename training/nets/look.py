@@ -5,30 +5,25 @@ changes.
 """
 
 import hashlib
+import json
 import time
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from lightgesture._version import __version__
-from lightgesture.errors import UsageError
+from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.models.cnn import CnnClassifier
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
-from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
-from lightgesture.training.nets.cnn import CnnTraining, net_settings
+from lightgesture.training.nets.checkpoints import need_torch, peak_memory_mib
+from lightgesture.training.nets.cnn import CnnTraining, draw, net_settings
 from lightgesture.training.nets.hand_samples import HandSamples
-from lightgesture.training.pool.kept_sources import held_out_hands, kept_out
-from lightgesture.training.pool.originals import read_originals
+from lightgesture.training.pool.kept_sources import held_out_hands
 from lightgesture.training.pool.patch_kinds import MARGIN
-from lightgesture.training.pool.patch_pool import make_pool, rows_without
-from lightgesture.training.pool.samples import read_rows, rows_digest
+from lightgesture.training.pool.samples import read_rows
 from lightgesture.training.samples import in_order
-from lightgesture.training.time_left import tenths
 
 
 def train_look_to_file(
@@ -48,34 +43,30 @@ def train_look_to_file(
     )
 
     started = time.monotonic()
-    rows = read_rows(training.data, training.without)
-    classes = in_order(row.token for row in rows)
     known = load_classifier(first)
+    # Before the pool is drawn, which takes minutes.
+    classes = in_order(row.token for row in read_rows(training.data, training.without))
     if not isinstance(known, CnnClassifier) or known.classes != classes:
         raise UsageError(f"{first}: is no net of the classes {', '.join(classes)}; train one with train cnn")
-    origin = hashlib.sha256(first.read_bytes()).hexdigest()
-    told = {"training": repr(replace(training, jobs=1)), "first": origin, "rows": rows_digest(rows)}
-    folder = checkpoint_folder(out, {**told, "version": __version__})
-    progress(f"reading {len(rows)} hands")
-    originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
-    pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
-    kept = kept_out(originals.hands)
-    sources = np.array([hand.source for hand in originals.hands])
-    samples = HandSamples(pool, rows_without(pool, sources, kept), classes, MARGIN)
+    small_net = small_net_section(first)
+    drawn = draw(training, out, progress, first=sha256_of(first))
+    samples = HandSamples(drawn.pool, drawn.learnt_from, drawn.classes, MARGIN)
     how = replace(net_settings(training), steps=training.teacher_steps)
-    larger = first_teacher(samples, how, training.seed, folder, progress)
-    hands = held_out_hands(known.model, originals, pool, kept)
+    larger = first_teacher(samples, how, training.seed, drawn.folder, progress)
+    hands = held_out_hands(known.model, drawn.originals, drawn.pool, drawn.kept)
     model = with_second_look(known.model, larger, hands)
     card = {
         "name": "cnn",
         "what": "hand patch to token: a small net that was trained before, and a larger one for what it doubts",
-        "small_net": {
-            "of_the_file_with_sha256": origin,
-            "trained_on": "an earlier table of hands/train: 12,278 hands, 5 of them under GPL-3.0, none of a real diver"
-            if first.is_relative_to(Path(__file__).resolve().parents[2])
-            else "see its own card",
-        },
-        **make_card(rows, originals, pool, training.without, answers_of_both(model, hands), classes),
+        "small_net": small_net,
+        **make_card(
+            drawn.rows,
+            drawn.originals,
+            drawn.pool,
+            training.without,
+            answers_of_both(model, hands),
+            drawn.classes,
+        ),
         "training": {
             "seed": training.seed,
             "steps": {"larger_net": training.teacher_steps},
@@ -88,3 +79,23 @@ def train_look_to_file(
     write_cnn_model(model, out)
     write_json(card, out.with_suffix(".json"))
     return card
+
+
+def small_net_section(first: Path) -> dict[str, Any]:
+    """What the card beside a model's file says of its small net, whatever second look that has. Raises InputError."""
+    try:
+        card = json.loads(first.with_suffix(".json").read_text(encoding="utf-8"))
+        if "small_net" in card:
+            return dict(card["small_net"])
+        known = {name: card["data"][name] for name in ("pictures", "sources", "licences")}
+        return {"of_the_file_with_sha256": sha256_of(first), "trained_on": known}
+    except OSError as error:
+        reason = error.strerror or "not readable"
+    except (ValueError, KeyError, TypeError) as error:
+        reason = f"no card of a classifier ({error})"
+    raise InputError(f"{first.with_suffix('.json')}: {reason}; a model needs its card to go on from")
+
+
+def sha256_of(path: Path) -> str:
+    """Of a file's content."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,7 +1,9 @@
 """Finds the tags of a picture: OpenCV's own detector, looked after where it misses, or AprilTag's for murky water."""
 
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Final, Literal, Protocol
 
 import cv2
@@ -181,19 +183,28 @@ class AprilTags:
         if family not in APRILTAG_FAMILIES:
             known = ", ".join(APRILTAG_FAMILIES)
             raise ValueError(f"'{family}' is no family that apriltag reads; use one of {known}, or aruco")
-        from pupil_apriltags import Detector
-
         self._family, self._settings = family, settings
-        self._detector: Any = Detector(families=APRILTAG_FAMILIES[family], nthreads=1, quad_decimate=1.0)
+        self._detector, self._lock = _apriltag(APRILTAG_FAMILIES[family])
 
     def process(self, grey: Grey, time_s: float) -> tuple[Tag, ...]:  # noqa: ARG002 - as TagDetector has it
         """See TagDetector; each picture is looked at on its own."""
+        with self._lock:
+            seen = self._detector.detect(np.ascontiguousarray(grey))
         found = [
             # It has the tags of OpenCV upside down, goes round the other way, and counts from the corners of pixels.
             checked(grey, self._family, int(one.tag_id), one.corners[[1, 0, 3, 2]] - 0.5, self._settings)
-            for one in self._detector.detect(np.ascontiguousarray(grey))
+            for one in seen
         ]
         return tuple(sorted(_kept(found), key=lambda tag: -tag.side))
+
+
+@cache
+def _apriltag(families: str) -> tuple[Any, threading.Lock]:
+    """The package's detector, one for the whole process and never given back, and what keeps threads apart: where the
+    package frees one it may free memory twice, which ends the process."""
+    from pupil_apriltags import Detector
+
+    return Detector(families=families, nthreads=1, quad_decimate=1.0), threading.Lock()
 
 
 def _kept(tags: Sequence[Tag | None]) -> list[Tag]:

@@ -1,5 +1,7 @@
 """Tags are read whichever way up, by both libraries alike, and a mirrored one never."""
 
+import gc
+
 import cv2
 import numpy as np
 import pytest
@@ -41,6 +43,15 @@ def test_a_tag_is_read_whichever_way_up(name, turns):
     # 16 to 80 in the upright picture, then turned: the first corner is the one that is printed at the upper left.
     expected = np.array([[16, 16], [16, 79], [79, 79], [79, 16]], float)[turns]
     assert np.abs(tag.corners[0] - expected).max() < 2
+
+
+def test_detectors_that_go_take_nothing_with_them():
+    picture = sheet(7, columns=1)
+    assert {detect(picture, "apriltag")[0].id for _ in range(60)} == {7}
+    one, other = (make_detector("apriltag", "36h11") for _ in range(2))
+    del one
+    gc.collect()
+    assert [tag.id for tag in other.process(picture, 0.0)] == [7]
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -32,8 +32,18 @@ MOST: Final = 0.9
 MOST_END: Final = 0.75
 """What the end word needs at most: it is judged as soon as it comes."""
 
-PASSED_S: Final = 0.4
+PASSED_S: Final = 0.38
 """Longest time between two signs with both hands in view, in which nothing was read, seconds, at caution 1."""
+
+CLEAR_S: Final = 0.6
+"""Seconds of clear frames, at caution 1, from which a number may be unclear for however long before and after. Else it
+needs CLEAR_SHARE: a hand that is seen badly may look like another number for a moment."""
+
+CLEAR_SHARE: Final = 0.5
+"""Least share of clear frames in the time that such a number was shown and passed to and from, 0 to 1, at caution 1."""
+
+MOST_CLEAR: Final = 0.6
+"""What it needs at most: passages are never clear."""
 
 MISFIT: Final = 5.0
 """How far a reading may fall behind the free loop within one word and the passage before it, in units of score, at
@@ -57,7 +67,7 @@ def find_doubt(search: Search, slot: int, reading: Reading, caution: float) -> D
     weak = find_weak(search.standing.certainties(slot), reading.words, caution)
     if weak is not None:
         return Doubt(reason="weak_sign", detail=f"{weak} was not seen well; sign it again")
-    return _find_gap(search, slot, reading, caution)
+    return _find_unclear(search, reading, caution) or _find_gap(search, slot, reading, caution)
 
 
 def is_weak(word: str, certainty: float, caution: float, *, opens: bool = False) -> bool:
@@ -82,6 +92,15 @@ def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float
     numbers = [(certainty, word) for word, certainty in seen if _is_number(word)]
     together = math.prod(certainty for certainty, _ in numbers)
     return min(numbers)[1] if together < min(NUMBER * caution, MOST) else None
+
+
+def _find_unclear(search: Search, reading: Reading, caution: float) -> Doubt | None:
+    """The first number that was clear only for a moment in the time around it."""
+    least = min(CLEAR_SHARE * caution, MOST_CLEAR)
+    for word, (clear_s, share) in zip(reading.words[1:], search.clarity.clear(reading.spoken), strict=False):
+        if _is_number(word) and clear_s < CLEAR_S * caution and share < least:
+            return Doubt(reason="weak_sign", detail=f"{word} was not seen steadily; sign it again")
+    return None
 
 
 def _find_gap(search: Search, slot: int, reading: Reading, caution: float) -> Doubt | None:

@@ -18,6 +18,9 @@ class Spoken:
     time_s: float
     behind: float
     fine: float
+    began: float
+    seen: float
+    is_again: bool = False
     sure: float = 0.0
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from lightgesture.fsm.language.forms import is_digit
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.rules.beam import BEAM, SHORT_COST, Beam
+from lightgesture.fsm.rules.clarity import Clarity
 from lightgesture.fsm.rules.dwell import Hold
 from lightgesture.fsm.rules.loop import COST, FreeLoop
 from lightgesture.fsm.rules.readings import Reading, Spoken
@@ -40,7 +41,8 @@ that of hands that are not in view."""
 
 
 class Search:
-    """The search for the readings of one stream: the windows, the free loop, the beam and how its readings stand.
+    """The search for the readings of one stream: the windows, the free loop, the beam and how its readings stand, and
+    what was clear.
 
     is_wary: whether signs that mean something else inside a sentence may open none. spent: a sign that may not, because
     it is still held from what was read before.
@@ -73,6 +75,7 @@ class Search:
         """As at the start of a stream."""
         self.windows = Windows(self.scores.size, self.hold_s)
         self.loop = FreeLoop(self.scores.size)
+        self.clarity = Clarity()
         self.beam = Beam(self._join, self.windows, self.loop)
         self.standing = Standing(self._join, self.beam, self.windows, self.loop)
         self.is_wary = False
@@ -96,6 +99,7 @@ class Search:
         weight = passed_s * RATE
         add, gap_add = scores * weight, GAP_SCORE * weight
         windows, beam = self.windows, self.beam
+        self.clarity.step(scores, passed_s, in_view_s)
         windows.step(add, of_left * weight, gap_add, passed_s, (frame, time_s))
         self.loop.step(add, gap_add, windows)
         beam.step(add, gap_add, passed_s, in_view_s)
@@ -132,10 +136,13 @@ class Search:
             if reading is not None and (beam.column[slot] != column or windows.is_released(column)):
                 self._continue(slot, reading, column, float(scores[place, slot]))
 
-    def _spoken(self, word: str, column: int, behind: float, fine: float) -> Spoken:
+    def _spoken(
+        self, word: str, column: int, behind: float, fine: float, *, is_again: bool = False
+    ) -> Spoken:
         """A word whose sign begins with the window."""
-        frame, time_s = self.windows.start_stamp
-        return Spoken(word, column, frame, time_s, behind, fine)
+        windows = self.windows
+        seen = self.clarity.seen - windows.hold_s
+        return Spoken(word, column, *windows.start_stamp, behind, fine, windows.start_s, seen, is_again)
 
     def _open(self, column: int, score: float) -> None:
         """A word opens a sentence, whatever was shown before."""
@@ -187,7 +194,7 @@ class Search:
         kept = replace(reading.spoken[-1], sure=self.standing.certainty(slot))
         before = reading.spoken[:-1] if is_again else (*reading.spoken[:-1], kept)
         new = Reading(
-            spoken=(*before, self._spoken(words[-1], column, behind, fine)),
+            spoken=(*before, self._spoken(words[-1], column, behind, fine, is_again=is_again)),
             state=target,
             before=reading.before if is_again else reading.state,
             began=reading.began,

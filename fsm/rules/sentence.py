@@ -6,6 +6,7 @@ is issued as soon as its end word was shown for the least length, if all of thes
 
 - the best reading with another text is clearly behind ("ambiguous"),
 - every word was seen well for once ("weak_sign"),
+- every number was shown steadily ("weak_sign"),
 - no longer time than a passage lies between two signs with both hands in view ("passed_over"),
 - no part of it is explained much better by signs that make no sentence ("does_not_fit").
 """

@@ -1,0 +1,116 @@
+"""What counts as shown clearly, and that a number which was clear only for a moment is doubted."""
+
+import numpy as np
+import pytest
+
+from lightgesture.fsm import Decoder, Sign, Signs
+from lightgesture.fsm.rules.clarity import MOST_RUNS, Clarity
+from lightgesture.fsm.rules.readings import Spoken
+
+DOUBTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.5, {"1": 0.5, "none": 0.3}))
+
+
+def of_pair(pair):
+    return Signs(*(Sign(token, 0.97, {token: 0.97}) for token in pair.split(",")))
+
+
+def outcome(grammar, shown, rate):
+    """What is issued and why it is not, of (what is shown, seconds)."""
+    decoder, frame, issued, reasons = Decoder(grammar, rule="sentence"), 0, [], []
+    for signs, seconds in [*shown, (Signs(), 3.0)]:
+        for _ in range(round(seconds * rate)):
+            for event in decoder.step(signs, frame / rate, frame):
+                issued += [event.text] if event.type == "instruction" else []
+                reasons += [(event.reason, event.detail)] if event.type == "rejected" else []
+            frame += 1
+    return issued, reasons
+
+
+def sentence(clear_s, doubted_s):
+    """STOP HOVER with a digit that is clear for so long between so much doubt, then 3 GO."""
+    passage = (Signs(), 0.2)
+    return [
+        (of_pair("0,0"), 0.8),
+        passage,
+        (of_pair("5,5"), 0.8),
+        (DOUBTED, doubted_s),
+        (of_pair("ok,0"), clear_s),
+        (DOUBTED, doubted_s),
+        (of_pair("pic,ok"), 0.8),
+        passage,
+        (of_pair("ok,3"), 0.8),
+        passage,
+        (of_pair("ok,ok"), 0.8),
+    ]
+
+
+@pytest.mark.parametrize("rate", [10, 30, 60])
+def test_a_number_that_is_clear_for_a_moment_between_doubt_is_not_believed(grammar, rate):
+    """A hand that held 1, seen badly, was read as 0 for 0.4 s: at caution 1 the instruction had another number."""
+    issued, reasons = outcome(grammar, sentence(0.4, 0.3), rate)
+    assert (issued, reasons) == ([], [("weak_sign", "0 was not seen steadily; sign it again")])
+
+
+@pytest.mark.parametrize("rate", [10, 30, 60])
+def test_the_same_number_without_doubt_around_it_is_issued(grammar, rate):
+    assert outcome(grammar, sentence(0.5, 0.1), rate) == (["STOP HOVER 3 GO"], [])
+
+
+def test_a_number_that_was_clear_for_long_may_have_been_doubted_before_and_after(grammar):
+    assert outcome(grammar, sentence(0.8, 0.3), 30) == (["STOP HOVER 3 GO"], [])
+
+
+def spoken(column, began, *, is_again=False):
+    return Spoken("A", column, 0, began, 0.0, 0.0, began, began, is_again)
+
+
+def clear(scores_of, column, seconds, in_view=True):
+    """Show a sign, or None, for so long, at ten frames a second."""
+    scores = [-9.0] * 4
+    if column is not None:
+        scores[column] = -0.1
+    for _ in range(round(seconds * 10)):
+        scores_of(np.array(scores), 0.1, 0.1 if in_view else 0.0)
+
+
+def test_the_share_is_of_the_time_from_sign_to_sign_with_both_hands_in_view():
+    clarity = Clarity()
+    for column, seconds, in_view in [
+        (0, 1.0, True),
+        (None, 0.3, True),
+        (None, 5.0, False),
+        (1, 0.4, True),
+        (None, 0.1, True),
+        (2, 1.0, True),
+    ]:
+        clear(clarity.step, column, seconds, in_view)
+    words = (spoken(0, 0.0), spoken(1, 6.3), spoken(2, 6.8))
+    assert list(clarity.clear(words)) == [pytest.approx((0.4, 0.5))]
+
+
+def test_a_repeated_sign_counts_from_its_repetition():
+    clarity = Clarity()
+    for column, seconds in [(0, 1.0), (None, 2.0), (1, 0.5), (2, 1.0)]:
+        clear(clarity.step, column, seconds)
+    again = (spoken(0, 0.0), spoken(1, 3.0, is_again=True), spoken(2, 3.5))
+    assert list(clarity.clear(again)) == [pytest.approx((0.5, 1.0))]
+
+
+def test_a_sign_that_was_never_clear_has_no_share():
+    clarity = Clarity()
+    for column, seconds in [(0, 1.0), (None, 1.0), (2, 1.0)]:
+        clear(clarity.step, column, seconds)
+    assert list(clarity.clear((spoken(0, 0.0), spoken(1, 1.2), spoken(2, 2.0)))) == [(0.0, 0.0)]
+
+
+def test_a_flicker_does_not_fill_the_memory():
+    clarity = Clarity()
+    for _ in range(MOST_RUNS):
+        clear(clarity.step, 1, 0.1)
+        clear(clarity.step, None, 0.3)
+    clear(clarity.step, 0, 1.0)
+    clear(clarity.step, 1, 1.0)
+    clear(clarity.step, 2, 1.0)
+    start = MOST_RUNS * 0.4
+    words = (spoken(0, start), spoken(1, start + 1), spoken(2, start + 2))
+    assert list(clarity.clear(words)) == [pytest.approx((1.0, 1.0))]

@@ -225,6 +225,35 @@ def test_a_sign_that_nobody_could_read_is_not_passed_over(diver):
     assert (issued(events), rejected(events)) == ([], ["passed_over"])
 
 
+@pytest.mark.parametrize(
+    ("caution", "passage_s", "reasons"),
+    [
+        (0.5, 0.8, []),
+        (0.5, 1.2, ["passed_over"]),
+        (1.0, 0.3, []),
+        (1.0, 0.6, ["passed_over"]),
+        (2.0, 0.15, []),
+        (2.0, 0.4, ["passed_over"]),
+    ],
+)
+def test_how_long_a_passage_may_last_is_divided_by_caution(grammar, caution, passage_s, reasons):
+    diver = Diver(grammar, caution=caution, passage_s=0.15)
+    diver.words("STOP HOVER", chance=0.99)
+    diver.show(UNREAD, passage_s - 0.15)
+    diver.words("GO", chance=0.99)
+    diver.pause(2.0)
+    assert rejected(diver.events) == reasons
+
+
+def test_a_word_that_opens_nothing_is_not_told_while_a_sentence_may_be_beginning(grammar):
+    """Twice the control's least, but weak for a first word: the word after it might be the second one."""
+    diver = Diver(grammar)
+    diver.pair("0", "0", chance=0.5)
+    events = diver.words("HOVER")
+    assert [event.reason for event in events if event.type == "notice"] == []
+    assert [event.text for event in events if event.type == "rejected"] == []
+
+
 def test_what_hides_both_hands_is_a_pause_unless_it_counts(grammar, write_grammar):
     diver = Diver(grammar)
     diver.words("STOP HOVER")

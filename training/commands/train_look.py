@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
     parser.add_argument(
-        "--steps", type=positive, default=5000, metavar="N", help="of the larger net (default: 5000)"
+        "--steps", type=positive, default=20000, metavar="N", help="of the larger net (default: 20000)"
     )
     parser.add_argument(
         "--precision", choices=PRECISIONS, default="float32", help="of the training, see train cnn"

@@ -20,7 +20,7 @@ from lightgesture.training.temperature import fit_temperature
 
 Progress = Callable[[str], None]
 
-SURE: Final = 0.9
+SURE: Final = 0.97
 """Probability of its likeliest class from which the small net is not doubted."""
 
 

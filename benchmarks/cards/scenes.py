@@ -71,19 +71,20 @@ def card_spec(scenario: Scenario, signing: Signing) -> SceneSpec:
         height = cards.get("shown_mm", CardSpec().shown_mm)[1]
         parts["cards"] |= {"shown_mm": (0.0, height, CardSpec().shown_mm[2])}
         room = DRIFT_MM if scenario.difficulty == "out of view" else 2.0 * DRIFT_MM
-        nearest = _distance_for_motions(parts, height, room) + max(parts["motion"]["approach_mm"], 0.0)
+        nearest = distance_for_motions(parts, room) + max(parts["motion"]["approach_mm"], 0.0)
         parts["diver"]["distance_mm"] = max(parts["diver"]["distance_mm"], nearest)
     return SceneSpec.model_validate(parts)
 
 
-def _distance_for_motions(parts: dict[str, Any], height: float, room: float) -> float:
+def distance_for_motions(parts: dict[str, Any], room: float) -> float:
     """From where on two cards are in the picture all the time, `room` from its edges, mm: a motion that leaves it is
-    refused, and a diver who sees that goes back a little."""
-    reach = REACH * CardSpec().motion_mm + 0.5 * CardSpec().side_mm + room
-    columns, rows = SIZE["tag-motion"]
-    level = abs(parts["diver"]["height_mm"] + height)
+    refused, and a diver who sees that goes back a little. parts: of a SceneSpec, of motions."""
+    cards = CardSpec.model_validate(parts["cards"])
+    reach = REACH * cards.motion_mm + 0.5 * cards.side_mm + room
+    columns, rows = parts["size"]
+    level = abs(parts["diver"]["height_mm"] + cards.shown_mm[1])
     half = max(APART_MM + reach, (level + reach) * columns / rows)
-    return float(2.0 * parts["camera"]["focal"] * half + CardSpec().shown_mm[2])
+    return float(2.0 * parts["camera"]["focal"] * half + cards.shown_mm[2])
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ class MatchSettings:
     most_distance: float = 0.28
     """Root mean square distance of partners from which on it is another shape, in spreads of the shape. Less: tidier
     motions; more: what was not meant may be read."""
-    least_lead: float = 0.05
+    least_lead: float = 0.03
     """By how much the next shape must be farther, in spreads. Less: more is read, and more is taken for another."""
 
 

@@ -50,8 +50,8 @@ class TagSettings:
     Less: reefs, sand and leaves take longer."""
     busy: float = 0.06
     """Share of neighbouring pixels that differ by more than `threshold` from which on a picture is busy, 0 to 1. Then
-    one window of WINDOWS_PX is tried a frame, in turn: reefs have thousands of outlines. Less: more pictures are
-    quick, and a tag that only one window finds is found a frame or two later."""
+    one window of WINDOWS_PX is tried a frame, in turn, unless a tag was lost: reefs have thousands of outlines. Less:
+    more pictures are quick, and a tag that only one window finds is found a frame or two later."""
 
 
 WINDOWS_PX: Final = (15, 7, 23)
@@ -139,8 +139,9 @@ class ArucoTags:
         return tuple(sorted(found, key=lambda tag: -tag.side))
 
     def _choose(self, grey: Grey) -> cv2.aruco.ArucoDetector:
-        """All windows, or one of them in turn where the picture is busy and not the first."""
-        if self._before is None or busyness(grey, self._settings.threshold) < self._settings.busy:
+        """All windows; one of them in turn where the picture is busy and no tag was lost that is still looked for."""
+        is_lost = self._before is None or any(at_s != self._before_s for _, at_s in self._last.values())
+        if is_lost or busyness(grey, self._settings.threshold) < self._settings.busy:
             return self._whole
         self._turn = (self._turn + 1) % len(self._single)
         return self._single[self._turn]
@@ -240,8 +241,8 @@ def busyness(grey: Grey, threshold: int) -> float:
     rows = grey[::ROWS_STEP]
     if rows.shape[1] <= 2:
         return 0.0
-    apart = cv2.compare(cv2.absdiff(rows[:, 2:], rows[:, :-2]), float(threshold), cv2.CMP_GT)
-    return cv2.countNonZero(apart) / apart.size
+    apart = cv2.absdiff(rows[:, 2:], rows[:, :-2])
+    return float(np.count_nonzero(apart > threshold) / apart.size)
 
 
 def _kept(tags: Sequence[Tag | None]) -> list[Tag]:

@@ -10,6 +10,7 @@ import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from lightgesture.benchmarks.interaction.report import draw_study, trials_table
@@ -30,13 +31,14 @@ def trial_keys(is_quick: bool = False) -> list[TrialKey]:
     ]
 
 
-def run_trials(keys: Sequence[TrialKey], jobs: int) -> Iterator[Trial]:
-    """Every trial, by so many processes."""
-    if jobs <= 1:
-        yield from map(run_trial, keys)
+def run_trials(keys: Sequence[TrialKey], jobs: int, is_rendered: bool = True) -> Iterator[Trial]:
+    """Every trial, by so many processes. is_rendered: as of `run_trial`."""
+    work = partial(run_trial, is_rendered=is_rendered)
+    if jobs <= 1 or not is_rendered:
+        yield from map(work, keys)
         return
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
-        yield from pool.map(run_trial, keys)
+        yield from pool.map(work, keys)
 
 
 def kept_trials(path: Path | None) -> list[Trial]:
@@ -61,6 +63,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes; default 1")
     parser.add_argument("--quick", action="store_true", help="one person of each kind in place of ten")
+    parser.add_argument(
+        "--models", action="store_true", help="the users' models alone: nothing is drawn, nothing misread"
+    )
     parser.add_argument("--picture", type=Path, default=None, metavar="FILE.png", help="draw it too")
     parser.add_argument(
         "--results",
@@ -70,10 +75,12 @@ def main() -> None:
         help="keep each trial there; those that are there are not run again (another file after a change of code)",
     )
     args = parser.parse_args()
+    if args.models and args.results is not None:
+        parser.error("--results keeps what was read; leave out --models or --results")
     kept = {trial.key: trial for trial in kept_trials(args.results)}
     keys = trial_keys(args.quick)
     trials = [kept[key] for key in keys if key in kept]
-    for trial in run_trials([key for key in keys if key not in kept], args.jobs):
+    for trial in run_trials([key for key in keys if key not in kept], args.jobs, not args.models):
         keep(trial, args.results)
         print(
             f"{trial.skill} {trial.person} {trial.way} {trial.kind} {trial.task}: {trial.tries} tries",

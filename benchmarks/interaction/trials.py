@@ -88,8 +88,11 @@ class Trial:
         return TrialKey(self.skill, self.person, self.way, self.kind, self.task)
 
 
-def run_trial(key: TrialKey) -> Trial:
-    """Every sentence of the task until each was issued, or given up."""
+def run_trial(key: TrialKey, is_rendered: bool = True) -> Trial:
+    """Every sentence of the task until each was issued, or given up.
+
+    is_rendered: else nothing is drawn and read, and a try is understood if it has no slip: the users' models alone.
+    """
     cv2.setNumThreads(1)
     grammar, user = load_grammar(), USERS[key.skill]
     place = SEED + 1000 * key.person + 10 * [*TASKS].index(key.kind) + key.task
@@ -109,7 +112,9 @@ def run_trial(key: TrialKey) -> Trial:
                 word_seconds(user, key.way, len(vocabulary_of(grammar)), _motion(grammar, word))
                 for word in words
             )
-            issued = read_words(words, key.way, int(rng.integers(2**31)), place)
+            seed = int(rng.integers(2**31))
+            understood = [] if is_slip else [sentence]
+            issued = read_words(words, key.way, seed, place) if is_rendered else understood
             counts["tries"] += 1
             counts["wrong_slips" if is_slip else "wrong_misread"] += sum(text != sentence for text in issued)
             if sentence in issued:

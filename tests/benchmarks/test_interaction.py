@@ -5,7 +5,7 @@ import pytest
 
 from lightgesture.benchmarks.cards.scenes import SIGNINGS, takes_of
 from lightgesture.benchmarks.cards.suite import CardAnswer, missed_table, suite_table
-from lightgesture.benchmarks.interaction.__main__ import keep, kept_trials, trial_keys
+from lightgesture.benchmarks.interaction.__main__ import keep, kept_trials, run_trials, trial_keys
 from lightgesture.benchmarks.interaction.report import draw_study, trials_table
 from lightgesture.benchmarks.interaction.trials import Trial, scene_of, vocabulary_of, with_slips
 from lightgesture.benchmarks.interaction.users import TASKS, USERS, WAYS, slip_chance, word_seconds
@@ -48,6 +48,14 @@ def test_a_slip_is_another_word():
 def test_the_study_is_that_of_ten_people():
     assert len(trial_keys()) == 10 * 6 * 3
     assert trial_keys()[: 3 * 6 * 3] == trial_keys(is_quick=True)
+
+
+def test_without_pictures_slips_are_the_only_mistakes():
+    trials = [*run_trials(trial_keys(), 1, is_rendered=False)]
+    assert {trial.misread + trial.wrong_slips + trial.wrong_misread for trial in trials} == {0}
+    assert sum(trial.slips for trial in trials if trial.skill == "expert") == 0
+    seconds = {way: sum(trial.seconds for trial in trials if trial.way == way) for way in WAYS}
+    assert seconds["hands"] < seconds["tag-motion"] < seconds["tags"]
 
 
 def test_trials_are_kept(tmp_path):

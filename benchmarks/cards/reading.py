@@ -8,6 +8,7 @@ import argparse
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from statistics import median
 from typing import Final
@@ -34,6 +35,9 @@ FOCAL_PX: Final = 560.0
 
 NOISE: Final = 2.0
 """Standard deviation added to every pixel of a pasted tag's frame, grey levels."""
+
+STREAM_HZ: Final = 30.0
+"""Pictures a second of what is looked at as a stream."""
 
 Find = Callable[[Grey], set[int]]
 
@@ -92,6 +96,12 @@ def finders() -> dict[str, Find]:
     return {"opencv": opencv_alone, "aruco": aruco_fresh, "apriltag": apriltag_own}
 
 
+def stream_finder() -> Find:
+    """The product's default as it looks at the pictures of one recording."""
+    detector, numbers = make_detector("aruco", FAMILY), count()
+    return lambda grey: {tag.id for tag in detector.process(grey, next(numbers) / STREAM_HZ)}
+
+
 def paste_tag(picture: Image, number: int, condition: Condition, rng: np.random.Generator) -> Grey:
     """The grey picture with a tag somewhere, its edge of two cells included, as a condition has it."""
     grey = cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY).astype(np.float32)
@@ -137,66 +147,71 @@ def _seen_corners(condition: Condition, rng: np.random.Generator) -> NDArray[np.
     return np.asarray(flat @ turn.T * condition.side_px + centre)
 
 
-def conditions_table(pictures: Sequence[Image], count: int) -> Table:
-    """Share of tags read by each, and wrong ids. count: tags a condition."""
+def conditions_table(pictures: Sequence[Image], tags: int) -> Table:
+    """Share of tags read by each, and wrong ids. tags: of each condition."""
     finds, rng = finders(), np.random.default_rng(5)
     rows: list[dict[str, Cell]] = []
     for condition in CONDITIONS:
         read, wrong = dict.fromkeys(finds, 0), 0
-        for index in range(count):
+        for index in range(tags):
             number = int(rng.integers(0, 587))
             grey = paste_tag(pictures[index % len(pictures)], number, condition, rng)
             for name, find in finds.items():
                 ids = find(grey)
                 read[name] += number in ids
                 wrong += len(ids - {number})
-        shares: dict[str, Cell] = {name: hits / count for name, hits in read.items()}
-        rows.append({"shown": condition.name, "tags": count, **shares, "wrong_ids": wrong})
+        shares: dict[str, Cell] = {name: hits / tags for name, hits in read.items()}
+        rows.append({"shown": condition.name, "tags": tags, **shares, "wrong_ids": wrong})
     columns = ("shown", "tags", *finds, "wrong_ids")
     return Table("tags_read", "Share of pasted tags that are read", columns, tuple(rows))
 
 
 def false_table(groups: dict[str, list[Path]], every: int) -> Table:
-    """Tags found where there are none, and the time of a picture. every: AprilTag's own looks at one in so many."""
-    finds = finders()
+    """Tags found where there are none, and the time of a picture. every: others than `aruco` look at one in so many."""
     rows: list[dict[str, Cell]] = []
     for group, files in groups.items():
-        found = dict.fromkeys(finds, 0)
-        times: dict[str, list[float]] = {name: [] for name in finds}
+        finds = {**finders(), "aruco, stream": stream_finder()}
+        times: dict[str, list[float]] = {}
+        found: dict[str, int] = {}
         for index, file in enumerate(files):
             picture = cv2.resize(read_picture(str(file)), SIZE, interpolation=cv2.INTER_AREA)
             grey = np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), np.uint8)
             for name, find in finds.items():
-                if name == "apriltag" and index % every:
+                if not name.startswith("aruco") and index % every:
                     continue
                 start = time.thread_time()
-                found[name] += len(find(grey))
-                times[name].append((time.thread_time() - start) * 1e3)
+                ids = find(grey)
+                times.setdefault(name, []).append((time.thread_time() - start) * 1e3)
+                found[name] = found.get(name, 0) + len(ids)
         rows += [
             {
                 "pictures": group,
                 "detector": name,
-                "looked_at": len(times[name]),
+                "looked_at": len(taken),
                 "false_tags": found[name],
-                "ms_median": round(median(times[name]), 2) if times[name] else None,
+                "ms_median": round(median(taken), 2),
+                "ms_p95": round(float(np.quantile(taken, 0.95)), 2),
             }
-            for name in finds
+            for name, taken in times.items()
         ]
-    columns = ("pictures", "detector", "looked_at", "false_tags", "ms_median")
-    note = "ms_median: processor time of one thread at 640 × 480."
+    columns = ("pictures", "detector", "looked_at", "false_tags", "ms_median", "ms_p95")
+    note = "ms: processor time of one thread at 640 × 480; stream: as of one recording, not of pictures on their own."
     return Table("tags_false", "Tags found where there are none", columns, tuple(rows), note)
 
 
-def distance_table(count: int, side_mm: float = 80.0) -> Table:
-    """Share of cards read by distance in each water. count: cards of each."""
+def distance_table(cards: int, side_mm: float = 80.0) -> Table:
+    """Share of cards read by distance in each water. cards: of each."""
     finds = finders()
     rows: list[dict[str, Cell]] = []
     for water_name, kind, depth_m, turbidity in WATERS:
+        shown = {
+            distance_m: list(_cards_at(distance_m, side_mm, cards, kind, depth_m, turbidity))
+            for distance_m in DISTANCES_M
+        }
         for name in ("aruco", "apriltag"):
             row: dict[str, Cell] = {"water": water_name, "detector": name}
-            for distance_m in DISTANCES_M:
-                cards = _cards_at(distance_m, side_mm, count, kind, depth_m, turbidity)
-                hits = [number in finds[name](grey) for number, grey in cards]
+            for distance_m, pictures in shown.items():
+                hits = [number in finds[name](grey) for number, grey in pictures]
                 row[f"{distance_m:g} m"] = sum(hits) / len(hits)
             rows.append(row)
     columns = ("water", "detector", *(f"{distance_m:g} m" for distance_m in DISTANCES_M))
@@ -207,14 +222,14 @@ def distance_table(count: int, side_mm: float = 80.0) -> Table:
 
 
 def _cards_at(
-    distance_m: float, side_mm: float, count: int, kind: str, depth_m: float, turbidity: float
+    distance_m: float, side_mm: float, cards: int, kind: str, depth_m: float, turbidity: float
 ) -> Iterator[tuple[int, Grey]]:
     """Ids and pictures of single cards in open water."""
     water = make_water(kind, depth_m, turbidity)
     light = daylight(water, (-0.25, -0.85, 0.55))
     camera = Camera(FOCAL_PX, (SIZE[0] / 2, SIZE[1] / 2))
     rng = np.random.default_rng(round(distance_m * 100))
-    for _ in range(count):
+    for _ in range(cards):
         number = int(rng.integers(0, 587))
         picture = np.full((SIZE[1], SIZE[0], 3), water.veil, np.float32)
         blur = float(np.hypot(0.7, water.blur_sigma(distance_m, SIZE[0])))
@@ -245,7 +260,7 @@ def main() -> None:
         print(table.to_text() + "\n", flush=True)
 
 
-def _tables(data: Path | None, count: int, every: int) -> Iterator[Table]:
+def _tables(data: Path | None, tags: int, every: int) -> Iterator[Table]:
     """What is asked for, each as soon as it is made."""
     if data is not None:
         suffixes = (".jpg", ".jpeg", ".png")
@@ -256,8 +271,8 @@ def _tables(data: Path | None, count: int, every: int) -> Iterator[Table]:
         yield false_table({name: files[::every] for name, files in groups.items()}, 10)
         shown = [read_picture(str(file)) for file in groups["divers"][:: max(len(groups["divers"]) // 24, 1)]]
         pictures = [np.asarray(cv2.resize(picture, SIZE), np.uint8) for picture in shown]
-        yield conditions_table(pictures, count)
-    yield distance_table(max(count // 6, 1))
+        yield conditions_table(pictures, tags)
+    yield distance_table(max(tags // 6, 1))
 
 
 if __name__ == "__main__":

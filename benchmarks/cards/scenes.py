@@ -15,10 +15,11 @@ from lightgesture.benchmarks.suite.scenarios import LAND, WATER, Scenario, scena
 from lightgesture.benchmarks.suite.takes import drawing_digest
 from lightgesture.fsm import load_grammar
 from lightgesture.results.atomic import replacing_folder
+from lightgesture.synth.card_motion import APART_MM
 from lightgesture.synth.cards import CARD_MM
 from lightgesture.synth.output import write_scene
 from lightgesture.synth.scene import Scene
-from lightgesture.synth.spec import SceneSpec
+from lightgesture.synth.spec import CardSpec, SceneSpec
 
 Signing = Literal["tags", "tag-motion"]
 SIGNINGS: Final[tuple[Signing, ...]] = ("tags", "tag-motion")
@@ -44,6 +45,9 @@ HEIGHT: Final = 190.0
 DRIFT_MM: Final = 50.0
 """What divers drift: so near the edge of the picture a card is held that should still be seen."""
 
+REACH: Final = 2.3
+"""How far a motion goes from where it begins, in `CardSpec.motion_mm`: twice, and what people stretch it."""
+
 HOLD: Final = 15
 """Frames, of no effect for cards."""
 
@@ -64,8 +68,23 @@ def card_spec(scenario: Scenario, signing: Signing) -> SceneSpec:
         cards |= {"hands": "left", "shown_mm": (float(np.clip(edge, 0.0, 260.0)), 60.0, 300.0)}
     parts["cards"] |= cards
     if signing == "tag-motion":
-        parts["cards"] |= {"shown_mm": (0.0, cards.get("shown_mm", (0.0, 60.0, 0.0))[1], 300.0)}
+        height = cards.get("shown_mm", CardSpec().shown_mm)[1]
+        parts["cards"] |= {"shown_mm": (0.0, height, CardSpec().shown_mm[2])}
+        room = DRIFT_MM if scenario.difficulty == "out of view" else 2.0 * DRIFT_MM
+        nearest = distance_for_motions(parts, room) + max(parts["motion"]["approach_mm"], 0.0)
+        parts["diver"]["distance_mm"] = max(parts["diver"]["distance_mm"], nearest)
     return SceneSpec.model_validate(parts)
+
+
+def distance_for_motions(parts: dict[str, Any], room: float) -> float:
+    """From where on two cards are in the picture all the time, `room` from its edges, mm: a motion that leaves it is
+    refused, and a diver who sees that goes back a little. parts: of a SceneSpec, of motions."""
+    cards = CardSpec.model_validate(parts["cards"])
+    reach = REACH * cards.motion_mm + 0.5 * cards.side_mm + room
+    columns, rows = parts["size"]
+    level = abs(parts["diver"]["height_mm"] + cards.shown_mm[1])
+    half = max(APART_MM + reach, (level + reach) * columns / rows)
+    return float(2.0 * parts["camera"]["focal"] * half + cards.shown_mm[2])
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,6 +64,7 @@ def draw_study(trials: Sequence[Trial], path: Path) -> None:
     axes = figure.subplots(len(skills), 2, squeeze=False, sharex=True)
     for row, skill in enumerate(skills):
         times, mistakes = axes[row]
+        most = 1.0
         for place, way in enumerate(WAYS):
             where = [order + 0.27 * (place - 1) for order in range(len(KINDS))]
             people = [
@@ -81,6 +82,8 @@ def draw_study(trials: Sequence[Trial], path: Path) -> None:
             mistakes.bar(where, per[2], 0.25, bottom=per[1], color=COLOURS[way], alpha=0.4, hatch="//")
             paper = [PAPER_MISTAKES[skill][kind][place] for kind in KINDS]
             mistakes.plot(where, paper, "k_", markersize=12, markeredgewidth=2)
+            most = max([most, *paper, *(a + b for a, b in zip(per[1], per[2], strict=True))])
+        mistakes.set_ylim(0.0, 1.1 * most)
         times.set_ylabel(f"{skill}\nseconds")
         mistakes.set_ylabel("mistakes")
         for one in (times, mistakes):
@@ -89,7 +92,7 @@ def draw_study(trials: Sequence[Trial], path: Path) -> None:
             one.set_axisbelow(True)
     axes[0][0].legend(frameon=False)
     axes[0][0].set_title("time until success")
-    axes[0][1].set_title("mistakes: slips, hatched: misread, line: the paper's")
+    axes[0][1].set_title("slips; hatched: misread; line: the paper")
     with replacing(path) as temporary:
         figure.savefig(temporary, format="png", dpi=100)
 

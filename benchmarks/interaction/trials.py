@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from lightgesture import Pipeline
+from lightgesture.benchmarks.cards.scenes import distance_for_motions
 from lightgesture.benchmarks.interaction.users import (
     PAPER_MISTAKES,
     TASKS,
@@ -28,6 +29,9 @@ from lightgesture.synth.variety import draw_spec
 
 SIZE: Final = (400, 300)
 DISTANCE_MM: Final = (1000.0, 1200.0)
+ROOM_MM: Final = 100.0
+"""From moved cards to the picture's edges: who moves cards stays so far away that they do not leave the picture."""
+
 DIFFICULTY: Final = 0.15
 """Of a pool, as the study was in calm water."""
 
@@ -49,6 +53,17 @@ SEED: Final = 77_000
 
 
 @dataclass(frozen=True, slots=True)
+class TrialKey:
+    """Who does what how."""
+
+    skill: Skill
+    person: int
+    way: Way
+    kind: Kind
+    task: int
+
+
+@dataclass(frozen=True, slots=True)
 class Trial:
     """What one task cost. seconds: all tries, by the users' models. slips: tries with a wrong word; misread: tries
     whose words were all right and that did not become the instruction. wrong_slips, wrong_misread: instructions issued
@@ -67,20 +82,17 @@ class Trial:
     wrong_misread: int
     is_done: bool
 
-
-@dataclass(frozen=True, slots=True)
-class TrialKey:
-    """Who does what how."""
-
-    skill: Skill
-    person: int
-    way: Way
-    kind: Kind
-    task: int
+    @property
+    def key(self) -> TrialKey:
+        """Whose trial it is."""
+        return TrialKey(self.skill, self.person, self.way, self.kind, self.task)
 
 
-def run_trial(key: TrialKey) -> Trial:
-    """Every sentence of the task until each was issued, or given up."""
+def run_trial(key: TrialKey, is_rendered: bool = True) -> Trial:
+    """Every sentence of the task until each was issued, or given up.
+
+    is_rendered: else nothing is drawn and read, and a try is understood if it has no slip: the users' models alone.
+    """
     cv2.setNumThreads(1)
     grammar, user = load_grammar(), USERS[key.skill]
     place = SEED + 1000 * key.person + 10 * [*TASKS].index(key.kind) + key.task
@@ -100,7 +112,9 @@ def run_trial(key: TrialKey) -> Trial:
                 word_seconds(user, key.way, len(vocabulary_of(grammar)), _motion(grammar, word))
                 for word in words
             )
-            issued = read_words(words, key.way, int(rng.integers(2**31)), place)
+            seed = int(rng.integers(2**31))
+            understood = [] if is_slip else [sentence]
+            issued = read_words(words, key.way, seed, place) if is_rendered else understood
             counts["tries"] += 1
             counts["wrong_slips" if is_slip else "wrong_misread"] += sum(text != sentence for text in issued)
             if sentence in issued:
@@ -145,6 +159,9 @@ def scene_of(words: Sequence[str], way: Way, seed: int, person: int) -> SceneSpe
     parts["backdrop"] |= {"surface_m": 0.0, "bubbles": 0.0}
     parts["motion"] |= {"approach_mm": 0.0}
     parts["camera"] |= {"focal": min(parts["camera"]["focal"], 0.9)}
+    if way == "tag-motion":
+        nearest = distance_for_motions(parts, ROOM_MM)
+        parts["diver"]["distance_mm"] = max(parts["diver"]["distance_mm"], nearest)
     return SceneSpec.model_validate(parts | {"seed": seed})
 
 

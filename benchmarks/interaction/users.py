@@ -1,15 +1,20 @@
 """Simulated users: how long a word takes them, and how often they show another one.
 
-Times are the sum of what the models of the literature give for each step of a word:
+Times are the sum of what the models of the literature give for each step of a word; the constants are those of the
+Model Human Processor (Card, Moran and Newell, "The Psychology of Human-Computer Interaction", 1983) where it has one,
+and assumed where this says so:
 
 - To choose one of n signs that are known by heart takes a + b log2 n (Hick, "On the rate of gain of information", QJEP
-  1952; Hyman, J. Exp. Psychology 1953), with constants after Cockburn, Gutwin and Greenberg, "A predictive model of
-  menu performance" (CHI 2007): 0.24 s and 0.08 s a bit.
-- To find a card in the book is, in the same model, a linear search of 0.3 s and 0.08 s a card for a novice, which
-  practice turns into the choice above: the share of that is the user's `practice`. A novice also turns pages.
+  1952; Hyman, J. Exp. Psychology 1953): a is one round of perceiving, thinking and moving, 0.1 + 0.07 + 0.07 s; b is
+  0.15 s a bit, their uncertainty principle.
+- To find a card in the book a novice looks at one after the other, as in the menu model of Cockburn, Gutwin and
+  Greenberg (CHI 2007), a fixation of the eye each, 0.23 s; practice turns that into the choice above, and its share is
+  the user's `practice`. To turn a page takes 0.5 s: assumed.
 - To move a card along a stroke of length D that must end within W takes a + b log2(D / W + 1) (Fitts, J. Exp.
-  Psychology 1954, in the form of MacKenzie, Human-Computer Interaction 1992), with 0.1 s and 0.2 s a bit.
-- A sign is held, and changed into the next one, as long as in the suite's part `real`.
+  Psychology 1954, in the form of MacKenzie, Human-Computer Interaction 1992). A hand in air takes 0.1 s a bit; with a
+  card, in water, 0.2 s and a start of 0.1 s are assumed.
+- How long a sign is held, and how long the way to the next one takes, is what the scenario suite assumes, 21 to 31 and
+  7 to 12 frames of 1/30 s: there is no recording of people who sign sentences with a clock to measure it on.
 
 Slips are not modelled but taken from the paper: its table of mistakes gives the chance that a word is a wrong one.
 """
@@ -44,19 +49,19 @@ PAPER_MISTAKES: Final[dict[Skill, dict[Kind, tuple[float, float, float]]]] = {
 }
 """Average mistakes before success over both tasks of a kind, in the order of WAYS (Islam, Ho and Sattar, ICRA 2018)."""
 
-CHOICE_S, CHOICE_BIT_S = 0.24, 0.08
-SEARCH_S, SEARCH_CARD_S = 0.3, 0.08
+CHOICE_S, CHOICE_BIT_S = 0.24, 0.15
+SEARCH_CARD_S = 0.23
 PAGE_S: Final = 0.5
-"""To turn a page of the book, seconds, an estimate for gloved hands: no source."""
+"""To turn a page of the book of two cards, seconds: assumed for gloved hands."""
 MOVE_S, MOVE_BIT_S = 0.1, 0.2
-HOLD_S, CHANGE_S = 0.87, 0.32
-"""Mean length of a hold and of the way to the next sign in the suite's part `real`, seconds."""
+HOLD_S, CHANGE_S = 26 / 30, 9.5 / 30
+"""Mean length of a hold and of the way to the next sign, seconds: assumed, as in the scenario suite."""
 CARD_S: Final = 0.8
-"""How long a card is shown."""
+"""How long a card is shown, seconds: assumed, of which the reader needs 0.3."""
 REST_S: Final = 0.9
-"""Rest after a motion, of which the reader needs 0.6."""
+"""Rest after a motion, seconds: assumed, of which the reader needs 0.6."""
 STROKE: Final = 3.0
-"""Length of a stroke against how exactly it must end, D / W."""
+"""Length of a stroke against how exactly it must end, D / W: assumed; the reader takes shapes that are a third off."""
 
 STROKES: Final = {
     **dict.fromkeys(("up", "down", "left", "right"), 2),
@@ -83,7 +88,7 @@ USERS: Final[dict[Skill, User]] = {
     "medium": User("medium", 0.5, 1.1),
     "expert": User("expert", 1.0, 1.0),
 }
-"""Practice and pace are choices of this study, not measurements; the order of the ways does not hang on them."""
+"""Practice and pace are assumed, not measured; the order of the ways does not hang on them."""
 
 
 def word_seconds(user: User, way: Way, vocabulary: int, motion: Sequence[str] = ()) -> float:
@@ -93,7 +98,7 @@ def word_seconds(user: User, way: Way, vocabulary: int, motion: Sequence[str] = 
         seconds = choice + CHANGE_S + HOLD_S
     elif way == "tags":
         # On average half of the book lies before the card; who knows it opens the book there.
-        search = SEARCH_S + SEARCH_CARD_S * vocabulary / 2 + PAGE_S * vocabulary / 4
+        search = CHOICE_S + SEARCH_CARD_S * vocabulary / 2 + PAGE_S * vocabulary / 4
         known = choice + PAGE_S
         seconds = user.practice * known + (1.0 - user.practice) * search + 2 * CHANGE_S + CARD_S
     else:

@@ -22,17 +22,17 @@ class MatchSettings:
 
     points: int = 32
     """Of both curves, evenly along the way."""
-    progress: float = 1.2
+    progress: float = 2.0
     """How far apart, in spreads of the shape, its beginning and its end are by the third coordinate. Less: a point may
     find its partner anywhere on the line; more: only where it should be by the way that is done."""
     most_turn_deg: float = 20.0
     """Most that a shape may be turned, 0 to 90: beyond 45 a way to the side is one up."""
     rounds: int = 12
     """Most rounds of closest points."""
-    most_distance: float = 0.22
+    most_distance: float = 0.28
     """Root mean square distance of partners from which on it is another shape, in spreads of the shape. Less: tidier
     motions; more: what was not meant may be read."""
-    least_lead: float = 0.06
+    least_lead: float = 0.03
     """By how much the next shape must be farther, in spreads. Less: more is read, and more is taken for another."""
 
 

@@ -42,9 +42,13 @@ class SegmentSettings:
     still_share: float = 0.3
     """Share of the other hand's size below which a hand is still: hands move along a little."""
     open_gap: float = 0.9
-    """Farthest that a motion may end from where it began ..."""
+    """Farthest that the one card may end from where it began, seen from the other ..."""
     open_share: float = 0.35
-    """... or, where that is more, as a share of its size."""
+    """... or, where that is more, as a share of the size of the motion."""
+    drift_gap: float = 1.2
+    """Farthest that both may end from where they began: divers drift, and take both cards along ..."""
+    drift_share: float = 0.5
+    """... or, where that is more, as a share of the size of the motion."""
     longest_s: float = 8.0
     """Longest motion."""
     gap_s: float = 0.25
@@ -183,8 +187,7 @@ class Segmenter:
         if max(sizes) < settings.least:
             self._phase = "resting"
             return Moment(self._phase)
-        gap = max(float(np.hypot(*curve[-1])) for curve in curves)
-        if gap > max(settings.open_gap, settings.open_share * max(sizes)):
+        if not self._is_back(curves[LEFT][-1], curves[RIGHT][-1], max(sizes)):
             if rested_s < settings.give_up_s:
                 return Moment(self._phase)
             self._phase = "resting"
@@ -192,14 +195,41 @@ class Segmenter:
         self._phase = "resting"
         if self._pose.reason is not None:
             return Moment(self._phase, reason=self._pose.reason)
-        still = max(settings.least, settings.still_share * max(sizes))
-        left, right = (curve if size >= still else None for curve, size in zip(curves, sizes, strict=True))
-        if left is None and right is not None:
-            right = self._without_drift(right, RIGHT, curves[LEFT], LEFT)
-        elif right is None and left is not None:
-            left = self._without_drift(left, LEFT, curves[RIGHT], RIGHT)
-        self._motion = Motion(left, right)
+        self._motion = self._drawn(*curves)
         return Moment(self._phase, self._motion)
+
+    def _is_back(self, left: Curve, right: Curve, size: float) -> bool:
+        """Whether both cards are where they began, but for drift, of which both have the same.
+
+        left, right: where each ended, (2,), from where it began. size: of the motion.
+        """
+        settings = self.settings
+        apart, together = float(np.hypot(*(left - right))), float(np.hypot(*(0.5 * (left + right))))
+        is_apart = apart > max(settings.open_gap, settings.open_share * size)
+        return not is_apart and together <= max(settings.drift_gap, settings.drift_share * size)
+
+    def _drawn(self, left: Curve, right: Curve) -> Motion:
+        """What the hands drew by themselves, for a motion that is back."""
+        closed = [self._closed(curve, hand) for hand, curve in ((LEFT, left), (RIGHT, right))]
+        sizes = [_size(curve) for curve in closed]
+        still = max(self.settings.least, self.settings.still_share * max(sizes))
+        is_still = [size < still for size in sizes]
+        if is_still[LEFT] != is_still[RIGHT]:
+            # The hand that is still tells how the whole body went.
+            moved, other = (RIGHT, LEFT) if is_still[LEFT] else (LEFT, RIGHT)
+            closed[moved] = self._without_drift(closed[moved], moved, closed[other], other)
+        return Motion(*(None if still else curve for still, curve in zip(is_still, closed, strict=True)))
+
+    def _closed(self, curve: Curve, hand: int) -> Curve:
+        """What a hand drew, less the way from its beginning to its end, evenly over the time: since the motion is back
+        where it began, that is drift."""
+        times = np.array(self._times(hand))
+        part = (times - times[0]) / max(times[-1] - times[0], 1e-9)
+        return np.asarray(curve - part[:, None] * (curve[-1] - curve[0]))
+
+    def _times(self, hand: int) -> list[float]:
+        """When a tag was seen since the motion began, seconds; one at least."""
+        return [at_s for at_s, _ in self._tracks[hand] if at_s >= self._begun_s] or [self._begun_s]
 
     def _curve(self, track: deque[tuple[float, Tag]], pose: _Pose) -> Curve:
         """What a tag drew since the motion began."""
@@ -214,10 +244,7 @@ class Segmenter:
 
     def _without_drift(self, curve: Curve, hand: int, other: Curve, still: int) -> Curve:
         """What a hand drew beyond how the whole body went, which the hand that was still tells."""
-        times, known = (
-            [at_s for at_s, _ in self._tracks[one] if at_s >= self._begun_s] or [self._begun_s]
-            for one in (hand, still)
-        )
+        times, known = self._times(hand), self._times(still)
         drift = np.column_stack([np.interp(times, known, other[:, axis]) for axis in (0, 1)])
         return np.asarray(curve - (drift - drift[0]))
 

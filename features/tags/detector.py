@@ -45,12 +45,21 @@ class TagSettings:
     """How far round its last place, in sides of the tag. More: quicker cards are followed, which takes longer."""
     small_side: float = 48.0
     """Side below which a tag that is followed is looked at enlarged, pixels."""
+    least_perimeter: float = 0.05
+    """Least perimeter of a tag as a share of the picture's longer side: 8 pixels a side at 640. OpenCV's own is 0.03.
+    Less: reefs, sand and leaves take longer."""
+    busy: float = 0.06
+    """Share of neighbouring pixels that differ by more than `threshold` from which on a picture is busy, 0 to 1. Then
+    one window of WINDOWS_PX is tried a frame, in turn, unless a tag was lost: reefs have thousands of outlines. Less:
+    more pictures are quick, and a tag that only one window finds is found a frame or two later."""
 
 
-LEAST_WINDOW_PX: Final = 7
-WINDOW_STEP_PX: Final = 8
-"""Windows of the thresholds, 7, 15 and 23 pixels. OpenCV's own, 3, 13 and 23, lose tags whose cells are 5 pixels wide
-where the card is no brighter than what is behind it."""
+WINDOWS_PX: Final = (15, 7, 23)
+"""Windows of the thresholds, pixels, the one that finds most first. OpenCV's own, 3, 13 and 23, lose tags whose cells
+are 5 pixels wide where the card is no brighter than what is behind it."""
+
+ROWS_STEP: Final = 8
+"""How busy a picture is, one row of so many tells."""
 
 NEAR_WINDOW_PX: Final = 53
 """Largest window of the thresholds where a tag was lost, pixels; OpenCV's own largest is 23."""
@@ -92,30 +101,50 @@ class ArucoTags:
 
     def __init__(self, family: str, settings: TagSettings) -> None:
         self._family, self._settings = family, settings
-        codes = dictionary(family)
-        whole, near = cv2.aruco.DetectorParameters(), cv2.aruco.DetectorParameters()
-        whole.adaptiveThreshConstant = settings.threshold
-        near.adaptiveThreshConstant = settings.near_threshold
-        near.adaptiveThreshWinSizeMax = NEAR_WINDOW_PX
+        near = self._parameters(settings.near_threshold, (WINDOWS_PX[1], NEAR_WINDOW_PX))
         near.minOtsuStdDev = settings.least_margin / 2
-        whole.adaptiveThreshWinSizeStep = WINDOW_STEP_PX
-        for one in (whole, near):
-            one.adaptiveThreshWinSizeMin = LEAST_WINDOW_PX
-            # The white edge of a card and its tag are one candidate to OpenCV, and else gone with the edge.
-            one.minDistanceToBorder = 0
-        self._whole, self._near = (cv2.aruco.ArucoDetector(codes, one) for one in (whole, near))
+        low, high = min(WINDOWS_PX), max(WINDOWS_PX)
+        whole = self._parameters(settings.threshold, (low, high), (high - low) // (len(WINDOWS_PX) - 1))
+        single = [self._parameters(settings.threshold, (side, side)) for side in WINDOWS_PX]
+        codes = dictionary(family)
+        self._near, self._whole, *self._single = (
+            cv2.aruco.ArucoDetector(codes, one) for one in (near, whole, *single)
+        )
+        self._turn = -1
         self._last: dict[int, tuple[Tag, float]] = {}
         self._before: Grey | None = None
         self._before_s = 0.0
 
+    def _parameters(
+        self, threshold: int, windows: tuple[int, int], step: int | None = None
+    ) -> cv2.aruco.DetectorParameters:
+        """OpenCV's own but for the thresholds. windows: the least and the largest, pixels."""
+        parameters = cv2.aruco.DetectorParameters()
+        parameters.adaptiveThreshConstant = threshold
+        parameters.adaptiveThreshWinSizeMin, parameters.adaptiveThreshWinSizeMax = windows
+        if step is not None:
+            parameters.adaptiveThreshWinSizeStep = step
+        # The white edge of a card and its tag are one candidate to OpenCV, and else gone with the edge.
+        parameters.minDistanceToBorder = 0
+        parameters.minMarkerPerimeterRate = self._settings.least_perimeter
+        return parameters
+
     def process(self, grey: Grey, time_s: float) -> tuple[Tag, ...]:
         """See TagDetector."""
-        found = self._detect(self._whole, grey, grey, 1.0, (0, 0))
+        found = self._detect(self._choose(grey), grey, grey, 1.0, (0, 0))
         found += self._follow(grey, time_s, {tag.id for tag in found})
         for tag in found:
             self._last[tag.id] = tag, time_s
         self._before, self._before_s = grey, time_s
         return tuple(sorted(found, key=lambda tag: -tag.side))
+
+    def _choose(self, grey: Grey) -> cv2.aruco.ArucoDetector:
+        """All windows; one of them in turn where the picture is busy and no tag was lost that is still looked for."""
+        is_lost = self._before is None or any(at_s != self._before_s for _, at_s in self._last.values())
+        if is_lost or busyness(grey, self._settings.threshold) < self._settings.busy:
+            return self._whole
+        self._turn = (self._turn + 1) % len(self._single)
+        return self._single[self._turn]
 
     def _follow(self, grey: Grey, time_s: float, found: set[int]) -> list[Tag]:
         """Tags that were seen shortly before and not found now, from where they were."""
@@ -205,6 +234,15 @@ def _apriltag(families: str) -> tuple[Any, threading.Lock]:
     from pupil_apriltags import Detector
 
     return Detector(families=families, nthreads=1, quad_decimate=1.0), threading.Lock()
+
+
+def busyness(grey: Grey, threshold: int) -> float:
+    """Share of pixels, 0 to 1, that differ by more than `threshold` grey levels from the second one beside them."""
+    rows = grey[::ROWS_STEP]
+    if rows.shape[1] <= 2:
+        return 0.0
+    apart = cv2.absdiff(rows[:, 2:], rows[:, :-2])
+    return float(np.count_nonzero(apart > threshold) / apart.size)
 
 
 def _kept(tags: Sequence[Tag | None]) -> list[Tag]:

@@ -89,6 +89,46 @@ def test_a_card_that_leaves_in_mid_motion_drops_the_sentence():
     assert [record.reason for record in records if record.type == "rejected"] == ["unread_sign"]
 
 
+def test_a_motion_that_never_ends_drops_the_sentence():
+    frames = pictures(MOTIONS["STOP"])
+    waved = np.vstack([drawn("wave")] * 8)
+    frames += [picture(offset, np.zeros(2)) for offset in waved]
+    records = play([*frames, *pictures(MOTIONS["GO"])])
+    assert [record.reason for record in records if record.type == "rejected"] == ["unread_sign"]
+    assert not [record for record in records if record.type == "instruction"]
+
+
+def test_cards_upside_down_say_nothing():
+    frames = [np.ascontiguousarray(image[::-1, ::-1]) for image in pictures(MOTIONS["STOP"], MOTIONS["UP"])]
+    assert "word" not in [record.type for record in play(frames)]
+
+
+def with_another(frames, number):
+    """A third card, in the upper corner at image left."""
+    tag = cv2.aruco.generateImageMarker(dictionary("36h11"), number, 32)
+    for image in frames:
+        image[:48, :48] = cv2.copyMakeBorder(tag, *[8] * 4, cv2.BORDER_CONSTANT, value=255)[..., None]
+    return frames
+
+
+def test_a_third_card_is_passed_over_and_a_second_of_one_id_is_not():
+    words = [
+        record.word for record in play(with_another(pictures(MOTIONS["STOP"]), 7)) if record.type == "word"
+    ]
+    assert words == ["STOP"]
+    assert [record.type for record in play(with_another(pictures(MOTIONS["STOP"]), 51))] == ["summary"]
+
+
+def test_a_grammar_without_motions(tmp_path):
+    path = tmp_path / "bare.toml"
+    with open(load_grammar().file, encoding="utf-8") as stream:
+        path.write_text(stream.read().partition("[motions]")[0], encoding="utf-8")
+    with pytest.raises(
+        GrammarError, match=r"bare.toml: has no \[motions\], which --front-end tag-motion reads"
+    ):
+        Pipeline(front_end="tag-motion", grammar=path)
+
+
 def test_mirrored_pictures_are_turned_back():
     frames = [np.ascontiguousarray(image[:, ::-1]) for image in pictures(MOTIONS["STOP"])]
     assert [record.word for record in play(frames, mirrored=True) if record.type == "word"] == ["STOP"]
@@ -128,18 +168,23 @@ class TestCommand:
         return call
 
     @pytest.fixture
-    def clip(self, tmp_path):
-        """Makes a video of motions."""
+    def write(self, tmp_path):
+        """Makes a video of pictures."""
 
-        def make(*pairs):
+        def make(frames):
             path = str(tmp_path / "clip.avi")
             writer = cv2.VideoWriter(path, cv2.VideoWriter.fourcc(*"MJPG"), FPS, SIZE[::-1])
-            for image in pictures(*pairs):
+            for image in frames:
                 writer.write(image)
             writer.release()
             return path
 
         return make
+
+    @pytest.fixture
+    def clip(self, write):
+        """Makes a video of motions."""
+        return lambda *pairs: write(pictures(*pairs))
 
     def test_a_recorded_shape_is_read(self, run, clip, tmp_path):
         status, lines, messages = run("record", clip(("still", "zigzag")), "hook")
@@ -169,6 +214,28 @@ class TestCommand:
     def test_a_clip_without_exactly_one(self, run, clip, pairs, words, message):
         path = clip(*pairs)
         status, _, messages = run("record", path, "hook", *words)
+        assert status == 1
+        assert messages[-1].startswith(f"lightgesture: {path}: {message}")
+
+    @pytest.mark.parametrize(
+        ("left", "right", "message"),
+        [
+            (drawn("up"), [None] * 20, "both cards are never in view; hold both before the camera"),
+            (
+                [*REST, *np.vstack([drawn("wave")] * 8)],
+                [np.zeros(2)] * 200,
+                "has 0 motions (it did not come to rest); record one",
+            ),
+            (
+                [*REST, *drawn("up")[:9], *[None] * FPS],
+                [np.zeros(2)] * 60,
+                "has 0 motions (a card was out of view for too long); record one",
+            ),
+        ],
+    )
+    def test_a_clip_says_why_it_has_none(self, run, write, left, right, message):
+        path = write([picture(*offsets) for offsets in zip(left, right, strict=False)])
+        status, _, messages = run("record", path, "hook")
         assert status == 1
         assert messages[-1].startswith(f"lightgesture: {path}: {message}")
 

@@ -5,9 +5,9 @@ import pytest
 
 from lightgesture.benchmarks.cards.scenes import SIGNINGS, takes_of
 from lightgesture.benchmarks.cards.suite import CardAnswer, missed_table, suite_table
-from lightgesture.benchmarks.interaction.__main__ import trial_keys
+from lightgesture.benchmarks.interaction.__main__ import keep, kept_trials, run_trials, trial_keys
 from lightgesture.benchmarks.interaction.report import draw_study, trials_table
-from lightgesture.benchmarks.interaction.trials import Trial, vocabulary_of, with_slips
+from lightgesture.benchmarks.interaction.trials import Trial, scene_of, vocabulary_of, with_slips
 from lightgesture.benchmarks.interaction.users import TASKS, USERS, WAYS, slip_chance, word_seconds
 from lightgesture.fsm import load_grammar
 from lightgesture.synth.script import sentence_words
@@ -47,7 +47,36 @@ def test_a_slip_is_another_word():
 
 def test_the_study_is_that_of_ten_people():
     assert len(trial_keys()) == 10 * 6 * 3
-    assert len(trial_keys(is_quick=True)) == 3 * 6 * 3
+    assert trial_keys()[: 3 * 6 * 3] == trial_keys(is_quick=True)
+
+
+def test_without_pictures_slips_are_the_only_mistakes():
+    trials = [*run_trials(trial_keys(), 1, is_rendered=False)]
+    assert {trial.misread + trial.wrong_slips + trial.wrong_misread for trial in trials} == {0}
+    assert sum(trial.slips for trial in trials if trial.skill == "expert") == 0
+    seconds = {way: sum(trial.seconds for trial in trials if trial.way == way) for way in WAYS}
+    assert seconds["hands"] < seconds["tag-motion"] < seconds["tags"]
+
+
+def test_trials_are_kept(tmp_path):
+    path = tmp_path / "study.jsonl"
+    assert kept_trials(path) == []
+    trials = [Trial("expert", 0, way, "STOP", 1, 2, 10.5, 1, 0, 0, 0, True) for way in WAYS]
+    for trial in trials:
+        keep(trial, path)
+    assert kept_trials(path) == trials
+    assert trials[0].key in trial_keys()
+    path.write_text('{"skill": 3}\n', encoding="utf-8")
+    with pytest.raises(SystemExit, match=r"study.jsonl: holds no trials of this study"):
+        kept_trials(path)
+
+
+def test_moved_cards_stay_in_the_picture():
+    for suite in ("water", "land"):
+        for take in takes_of("tag-motion", suite):
+            assert take.spec.diver.distance_mm > 1100.0
+    near = {way: scene_of(["STOP", "GO"], way, 3, 5).diver.distance_mm for way in WAYS}
+    assert near["tags"] == near["hands"] < near["tag-motion"]
 
 
 def test_tables_and_picture_of_a_study(tmp_path):

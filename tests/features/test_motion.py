@@ -212,6 +212,23 @@ class TestSegments:
         assert motions(moments) == []
         assert reasons(moments) == ["elsewhere"]
 
+    def test_what_both_hands_carry_elsewhere_is_none(self):
+        away = drawn(np.array([(0, 0), (0, 1)], float))
+        moments = play((REST, REST), (away, away), (REST + away[-1], REST + away[-1]))
+        assert motions(moments) == []
+        assert reasons(moments) == ["elsewhere"]
+
+    @pytest.mark.parametrize("pair", [("up", "down"), ("clockwise", "anticlockwise"), ("wave", None)])
+    def test_a_diver_who_drifts_while_moving(self, pair):
+        curves = [drawn(None if name is None else SHAPES[name][0]) for name in pair]
+        away = np.linspace(0.0, SIDE, len(curves[0]))[:, None] * np.array([[0.8, 0.6]])
+        moments = play((REST, REST), [curve + away for curve in curves], (REST + away[-1], REST + away[-1]))
+        (motion,) = motions(moments)
+        assert names(motion) == pair
+        assert reasons(moments) == []
+        for curve in (motion.left, motion.right):
+            assert curve is None or np.abs(curve[-1] - curve[0]).max() < 0.2
+
     def test_a_motion_that_never_ends(self):
         circle = drawn(SHAPES["clockwise"][0])
         moments = play((REST, REST), *[(circle, circle)] * 8)

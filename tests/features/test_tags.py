@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.features.tags.detector import ArucoTags, TagSettings, make_detector
+from lightgesture.features.tags.detector import ArucoTags, TagSettings, busyness, make_detector
 from lightgesture.features.tags.tag import DICTIONARIES, cells_of, dictionary, examine
 from lightgesture.fsm import load_grammar
 from lightgesture.fsm.language.cards import FAMILIES
@@ -99,6 +99,31 @@ def test_a_tag_that_is_lost_is_looked_for_where_it_was():
     assert [tag.id for tag in detector.process(clear, 0.1)] == [5]
     assert [tag.id for tag in detector.process(murky, 0.2)] == [5]
     assert detector.process(murky, 9.0) == ()
+
+
+def test_in_a_busy_picture_one_window_a_frame_finds_what_all_find():
+    rng = np.random.default_rng(0)
+    reef = cv2.GaussianBlur(rng.uniform(0, 255, (480, 640)).astype(np.float32), (0, 0), 1.2)
+    picture = np.clip((reef - 128) * 3 + 110, 0, 255).astype(np.uint8)
+    assert busyness(np.full((480, 640), 110, np.uint8), 5) == 0.0
+    assert busyness(picture, 5) > 10 * TagSettings().busy
+    picture[100:196, 200:296] = sheet(5, columns=1)
+    detector = ArucoTags("36h11", TagSettings(follow_s=0.0))
+    assert [[tag.id for tag in detector.process(picture, float(frame))] for frame in range(5)] == [[5]] * 5
+
+
+def test_a_tag_that_was_lost_in_a_busy_picture_is_looked_for_with_all_windows():
+    rng = np.random.default_rng(0)
+    picture = rng.integers(0, 255, (480, 640), np.uint8)
+    detector = ArucoTags("36h11", TagSettings(follow_s=0.5))
+    shown = picture.copy()
+    shown[100:196, 200:296] = sheet(5, columns=1)
+    # Dim and blurred, so that neither of the first two windows finds it alone, and out of reach of a look nearby.
+    dim = cv2.GaussianBlur(110 + (sheet(5, columns=1).astype(np.float32) - 127) * 0.08, (0, 0), 2.5)
+    moved = picture.copy()
+    moved[300:396, 450:546] = dim.astype(np.uint8)
+    assert [len(detector.process(one, at_s)) for one, at_s in ((shown, 0.0), (picture, 0.1))] == [1, 0]
+    assert [tag.id for tag in detector.process(moved, 0.2)] == [5]
 
 
 @pytest.mark.parametrize(

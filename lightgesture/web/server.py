@@ -204,9 +204,7 @@ class _Handler(BaseHTTPRequestHandler):
     def send_error(self, code: int, *_more: str | None) -> None:
         """A line in place of the page that the base class makes of what it was sent."""
         status = HTTPStatus(code)
-        self.request_version = (
-            self.protocol_version
-        )  # which is empty after a line that is none
+        self.request_version = self.protocol_version  # which is empty after a line that is none
         self._refuse(Refusal(status, status.phrase.lower()))
 
     def do_GET(self) -> None:

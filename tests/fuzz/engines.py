@@ -57,6 +57,8 @@ class Feeder:
 
         tally = self._tally
         start_s = time.monotonic()
+        if not tally.inputs:
+            tally.start_s = start_s  # what was imported before does not count
         try:
             tally.refused += not feed(self._run, content)
         except Exception as error:

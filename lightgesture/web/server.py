@@ -201,6 +201,15 @@ class _Handler(BaseHTTPRequestHandler):
         self.rfile = io.BytesIO(head)
         self.handle_one_request()
 
+    def parse_request(self) -> bool:
+        """As its base, but for HTTP/0.9, whose answers have no headers to protect them."""
+        if not super().parse_request():
+            return False
+        if self.request_version == "HTTP/0.9":
+            self.send_error(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED)
+            return False
+        return True
+
     def send_error(self, code: int, *_more: str | None) -> None:
         """A line in place of the page that the base class makes of what it was sent."""
         status = HTTPStatus(code)

@@ -231,7 +231,8 @@ def test_a_request_that_is_too_large_is_refused(serve, content):
 
 
 @pytest.mark.parametrize(
-    "content", [b"POST / HTTP/1.0\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"<script> x HTTP/1.0\r\n\r\n"]
+    "content",
+    [b"POST / HTTP/1.0\r\n\r\n", b"GET / HTTP/9.9\r\n\r\n", b"GET /\r\n\r\n", b"<script> x HTTP/1.0\r\n\r\n"],
 )
 def test_refusals_say_nothing_of_what_was_asked_and_have_all_headers(serve, content):
     answer = talk(serve(), content)

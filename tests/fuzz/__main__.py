@@ -11,6 +11,7 @@ Needs Atheris, which is in the extra `hold`. Inputs that led on, faults and coun
 
 import argparse
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ import time
 from pathlib import Path
 
 from .child import places, tally_file
+from .engines import LAST
 from .keeping import keep
 from .targets import TARGETS
 
@@ -82,6 +84,8 @@ def _fuzz(name: str, engine: str, seconds: float, work: Path) -> int:
         if status and not _note_end(tally_file(log, engine, number), status):
             print(f"{name}: does not begin; see {messages.name}", file=sys.stderr)
             return 1
+        if status:
+            shutil.copy(found.with_suffix(f".{LAST}"), found / f"native-{number:04}")
     return int(any(found.iterdir()))
 
 

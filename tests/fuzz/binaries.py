@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 
 from lightgesture.features.archive import HEADER, read_archive
-from lightgesture.features.find.selector_file import load_classical, load_learned
+from lightgesture.features.find.selector_file import BUNDLED, load_classical, load_learned
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.net.file import network_from
 from lightgesture.features.net.runner import Network
 from lightgesture.features.tags.detector import make_detector
 from lightgesture.models import load_classifier
+from lightgesture.models.loading import SHIPPED
 from lightgesture.sources.bag import BagFile
 from lightgesture.sources.bag_messages import CDR, PROTOBUF, ROS1, picture_type, read_message
 from lightgesture.sources.packets import PacketDecoder
@@ -51,8 +52,7 @@ def member(content: bytes) -> None:
 
 
 def svm_header(content: bytes) -> None:
-    _, arrays = read_archive(_shipped("svm"))
-    _load(content, {name: _npy(array) for name, array in _small(arrays).items()})
+    _load(content, _machine())
 
 
 def cnn_header(content: bytes) -> None:
@@ -83,14 +83,14 @@ def tflite(content: bytes) -> None:
 
 def selector(content: bytes) -> None:
     """Trees of the bundled selector, their numbers overwritten: array, place and bytes are the content's."""
-    header, arrays = read_archive(_bundled_selector(), lambda name: "pair" in name or "places" in name)
-    changed = {name: array.copy() for name, array in arrays.items()}
+    header, arrays = _selector()
+    changed = {name: array.copy() for name, array in arrays.items() if "pair" in name or "places" in name}
     names = sorted(name for name in changed if changed[name].dtype.kind in "iuf" and changed[name].size)
     for number in range(0, len(content) - 3, 4):
         array = changed[names[content[number] % len(names)]].reshape(-1)
         place = int.from_bytes(content[number + 1 : number + 3], "big") % array.size
         array[place] = np.array(content[number + 3]).astype(np.int8).astype(array.dtype)
-    whole = {**read_archive(_bundled_selector())[1], **changed}
+    whole = {**arrays, **changed}
     members = {name: _npy(array) for name, array in whole.items()}
     path = _zip({HEADER: _npy(np.frombuffer(json.dumps(header).encode(), np.uint8)), **members})
     load_learned(path)
@@ -166,15 +166,18 @@ def _npy(array: Any) -> bytes:
     return stream.getvalue()
 
 
-def _small(arrays: dict[str, Any]) -> dict[str, Any]:
+@cache
+def _machine() -> dict[str, bytes]:
     """The arrays of a machine with two expansion vectors of four numbers."""
-    return {
+    _, arrays = read_archive(SHIPPED["svm"])
+    small = {
         "mean": arrays["mean"],
         "projection": arrays["projection"][:, :4],
         "centres": arrays["centres"][:2, :4],
         "weights": arrays["weights"][:2],
         "bias": arrays["bias"],
     }
+    return {name: _npy(array) for name, array in small.items()}
 
 
 @cache
@@ -183,17 +186,8 @@ def _detectors() -> list[Any]:
 
 
 @cache
-def _shipped(name: str) -> Path:
-    from lightgesture.models.loading import SHIPPED
-
-    return SHIPPED[name]
-
-
-@cache
-def _bundled_selector() -> Path:
-    from lightgesture.features.find.selector_file import BUNDLED
-
-    return BUNDLED
+def _selector() -> tuple[dict[str, Any], dict[str, Any]]:
+    return read_archive(BUNDLED)
 
 
 @cache

@@ -19,8 +19,10 @@ SLOW_S = 5.0
 """Seconds for one input that count as a hang."""
 MEMORY_MIB = 3072
 LONGEST_INPUT = 1 << 14
-NOTED_EVERY = 200
-"""Inputs between two notes of the count."""
+NOTED_EVERY_S = 2.0
+"""Seconds between two notes of the count."""
+LAST = "last"
+"""File with the input that is being tried: where a process is killed, it is what did it."""
 
 
 @dataclass(slots=True)
@@ -59,6 +61,7 @@ class Feeder:
         start_s = time.monotonic()
         if not tally.inputs:
             tally.start_s = start_s  # what was imported before does not count
+        (self._found.parent / f"{tally.target}.{LAST}").write_bytes(content)
         try:
             tally.refused += not feed(self._run, content)
         except Exception as error:
@@ -68,7 +71,7 @@ class Feeder:
             self._keep("slow", content, TimeoutError(f"took {took_s:.1f} s"))
         tally.slowest_s = max(tally.slowest_s, round(took_s, 3))
         tally.inputs += 1
-        if tally.inputs % NOTED_EVERY == 1:
+        if time.monotonic() > tally.start_s + tally.seconds + NOTED_EVERY_S or tally.inputs == 1:
             tally.note()
 
     def _keep(self, kind: str, content: bytes, error: BaseException) -> None:

@@ -162,7 +162,10 @@ def _layout(stream: IO[bytes], name: str) -> tuple[tuple[int, ...], bool, np.dty
     if match is None:
         raise ValueError(f"{name} holds something else than numbers or text, a pickle perhaps")
     shape = tuple(int(side) for side in match[3].split(b",") if side.strip())
-    return shape, match[2] == b"True", np.dtype(match[1].decode("ascii"))
+    try:
+        return shape, match[2] == b"True", np.dtype(match[1].decode("ascii"))
+    except TypeError as error:  # seven bytes for a whole number
+        raise ValueError(f"{name}: {error}") from None
 
 
 def check_format(file: Path, header: Mapping[str, Any], kind: str, version: int) -> None:

@@ -138,7 +138,7 @@ def test_too_many_members_are_refused(tmp_path):
         claimed((1,), [("x", "<f4")]) + bytes(4),
         claimed((1,))[:20],
         claimed((1,), "<f4'\0"),
-        claimed((1,), "<f99"),
+        claimed((1,), "<i7") + bytes(7),
         b"\x93NUMPY\x01\x00\x05\x00{'des",
         b"",
         b"\x80\x04pickle",

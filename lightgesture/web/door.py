@@ -7,10 +7,10 @@ import secrets
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from http import HTTPStatus
-from typing import Final
+from typing import Final, Protocol
 from urllib.parse import parse_qs, urlsplit
 
 LOCAL_NAME: Final = re.compile(r"[a-z0-9-]{1,63}\.local")
@@ -40,6 +40,14 @@ class Refusal:
     text: str
 
 
+class Headers(Protocol):
+    """The headers of a request, by any spelling of their names."""
+
+    def get(self, name: str, /) -> str | None:
+        """A header, the first of that name; None where there is none."""
+        ...
+
+
 class Door:
     """Decides on requests; its methods may be called from any thread.
 
@@ -58,10 +66,10 @@ class Door:
         self._names = known_names(host)
         self._rates = Rates(clock)
 
-    def objection(self, address: str, path: str, headers: Mapping[str, str], cookie: str) -> Refusal | None:
+    def objection(self, address: str, path: str, headers: Headers, cookie: str) -> Refusal | None:
         """Why a request is refused; None: it may be answered.
 
-        address: of who asks. path: with its query. headers: by any spelling of their names. cookie: name of the one
+        address: of who asks. path: with its query. cookie: name of the one
         that holds the token.
         """
         if not self._rates.take(address):
@@ -125,7 +133,7 @@ def is_loopback(host: str) -> bool:
         return host.lower() == "localhost"
 
 
-def tokens_of(path: str, headers: Mapping[str, str], cookie: str) -> list[str]:
+def tokens_of(path: str, headers: Headers, cookie: str) -> list[str]:
     """The tokens that a request names: in its query, as a bearer, in its cookie."""
     found = _asked(path)
     scheme, _, bearer = (headers.get("Authorization") or "").partition(" ")
@@ -138,7 +146,7 @@ def tokens_of(path: str, headers: Mapping[str, str], cookie: str) -> list[str]:
     return found
 
 
-def is_foreign(headers: Mapping[str, str]) -> bool:
+def is_foreign(headers: Headers) -> bool:
     """Whether a page of another site asks, by what its browser says: `Origin`, or `Sec-Fetch-Site`.
 
     A link that somebody follows from elsewhere is none of these: the page opens, and the other site sees nothing.

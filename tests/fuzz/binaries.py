@@ -3,6 +3,7 @@
 import hashlib
 import io
 import json
+import math
 import zipfile
 from contextlib import closing, suppress
 from functools import cache
@@ -16,6 +17,8 @@ from lightgesture.features.archive import HEADER, read_archive
 from lightgesture.features.find.selector_file import BUNDLED, load_classical, load_learned
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.net.file import network_from
+from lightgesture.features.net.flatbuffer import network_arrays
+from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Network
 from lightgesture.features.tags.detector import make_detector
 from lightgesture.models import load_classifier
@@ -26,13 +29,15 @@ from lightgesture.sources.packets import PacketDecoder
 from lightgesture.sources.pictures import depth_of, read_picture
 from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.video import VideoFile
-from lightgesture.training.nets.flatbuffer import network_arrays
 from tests.models.test_cnn import random_model
 
 from .scratch import file_of, folder
 
 FRAMES = 4
 """Pictures that are taken of a recording."""
+
+MOST_VALUES = 1 << 16
+"""Of the inputs of a net that is run."""
 
 WRITINGS = (ROS1, CDR, PROTOBUF)
 KINDS = (
@@ -67,7 +72,7 @@ def layout(content: bytes) -> None:
         if isinstance(listed, dict):
             listed["sha256"] = hashlib.sha256(arrays["net_tflite"].tobytes()).hexdigest()
             content = json.dumps(listed).encode()
-    network_from({**arrays, "net_layout": np.frombuffer(content, np.uint8)}, "net")
+    _run(network_from({**arrays, "net_layout": np.frombuffer(content, np.uint8)}, "net"))
 
 
 def tflite(content: bytes) -> None:
@@ -76,9 +81,7 @@ def tflite(content: bytes) -> None:
     listed = json.loads(arrays["net_layout"].tobytes())
     listed["sha256"] = hashlib.sha256(content).hexdigest()
     text = np.frombuffer(json.dumps(listed).encode(), np.uint8)
-    network = network_from({"net_layout": text, "net_tflite": np.frombuffer(content, np.uint8)}, "net")
-    runner = Network(network)
-    runner.run({name: np.zeros((1, *shape), np.int8) for name, shape in network.inputs.items()})
+    _run(network_from({"net_layout": text, "net_tflite": np.frombuffer(content, np.uint8)}, "net"))
 
 
 def selector(content: bytes) -> None:
@@ -145,6 +148,13 @@ def packets(content: bytes) -> None:
         with suppress(ValueError):
             decoder.feed(number, number, np.frombuffer(b"\0\0\0\1" + part, np.uint8))
     decoder.flush()
+
+
+def _run(network: IntegerNetwork) -> None:
+    """Once, of blank pictures that are not too large, by LiteRT where it is installed."""
+    runner = Network(network)
+    if sum(math.prod(shape) for shape in network.inputs.values()) < MOST_VALUES:
+        runner.run({name: np.zeros((1, *shape), np.int8) for name, shape in network.inputs.items()})
 
 
 def _load(header: bytes, members: dict[str, bytes]) -> None:

@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 from .child import places, tally_file
-from .engines import LAST
+from .engines import last_of
 from .keeping import keep
 from .targets import TARGETS
 
@@ -85,7 +85,8 @@ def _fuzz(name: str, engine: str, seconds: float, work: Path) -> int:
             print(f"{name}: does not begin; see {messages.name}", file=sys.stderr)
             return 1
         if status:
-            shutil.copy(found.with_suffix(f".{LAST}"), found / f"native-{number:04}")
+            shutil.copy(last_of(name), found / f"native-{number:04}")
+    last_of(name).unlink(missing_ok=True)
     return int(any(found.iterdir()))
 
 

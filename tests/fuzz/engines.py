@@ -5,7 +5,9 @@ Either counts what it tries, notes each kind of fault once, and goes on after it
 
 import hashlib
 import json
+import os
 import sys
+import tempfile
 import time
 import traceback
 from dataclasses import asdict, dataclass, field
@@ -21,8 +23,14 @@ MEMORY_MIB = 3072
 LONGEST_INPUT = 1 << 14
 NOTED_EVERY_S = 2.0
 """Seconds between two notes of the count."""
-LAST = "last"
-"""File with the input that is being tried: where a process is killed, it is what did it."""
+MEMORY = Path("/dev/shm")
+"""A folder in memory, where the system has one: a file is written for each input."""
+
+
+def last_of(target: str) -> Path:
+    """The file with the input that is being tried: where a process is killed, it is what did it."""
+    folder = MEMORY if os.access(MEMORY, os.W_OK) else Path(tempfile.gettempdir())
+    return folder / f"lightgesture-fuzz-{target}"
 
 
 @dataclass(slots=True)
@@ -53,6 +61,7 @@ class Feeder:
         from .targets import TARGETS
 
         self._run, self._tally, self._found = TARGETS[target].run, tally, found
+        self._last = last_of(target)
 
     def __call__(self, content: bytes) -> None:
         from .scratch import feed
@@ -61,7 +70,7 @@ class Feeder:
         start_s = time.monotonic()
         if not tally.inputs:
             tally.start_s = start_s  # what was imported before does not count
-        (self._found.parent / f"{tally.target}.{LAST}").write_bytes(content)
+        self._last.write_bytes(content)
         try:
             tally.refused += not feed(self._run, content)
         except Exception as error:

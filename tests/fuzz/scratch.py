@@ -18,6 +18,8 @@ from lightgesture.features.profile import ProfileError
 from lightgesture.fsm import GrammarError
 from lightgesture.models import ModelError
 
+from .engines import MEMORY
+
 REFUSALS = (
     ArchiveError,
     GrammarError,
@@ -42,8 +44,7 @@ class FaultError(AssertionError):
 @cache
 def folder() -> Path:
     """A folder of this process, in memory where there is such a place."""
-    memory = "/dev/shm"
-    path = Path(tempfile.mkdtemp(prefix="fuzz-", dir=memory if os.access(memory, os.W_OK) else None))
+    path = Path(tempfile.mkdtemp(prefix="fuzz-", dir=MEMORY if os.access(MEMORY, os.W_OK) else None))
     atexit.register(shutil.rmtree, path, ignore_errors=True)
     return path
 

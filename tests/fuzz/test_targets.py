@@ -41,7 +41,7 @@ def test_what_hypothesis_makes_of_it(name):
     examples()
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=20, suppress_health_check=[HealthCheck.too_slow])
 @given(st.data())
 def test_changed_texts_are_taken_or_refused(data):
     name = data.draw(st.sampled_from([name for name, target in TARGETS.items() if target.shape != "bytes"]))

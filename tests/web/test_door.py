@@ -85,7 +85,7 @@ def test_who_listens_wider_has_a_new_token_each_time(host):
 
 
 def test_the_network_needs_the_token_for_everything(serve):
-    page = serve(ANY)
+    page = serve(token=TOKEN)
     for path in (
         "/",
         "/display",
@@ -106,7 +106,7 @@ def test_the_network_needs_the_token_for_everything(serve):
 
 
 def test_the_printed_link_opens_the_page_and_leaves_no_token_in_the_address(serve):
-    page = serve(ANY)
+    page = serve(token=TOKEN)
     path = page.link("display").removeprefix(page.address.rstrip("/"))
     status, headers, _ = ask(page, path)
     assert (status, headers["Location"]) == (303, "/display")
@@ -128,7 +128,7 @@ def test_loopback_and_who_wants_it_open_need_none(serve):
     page = serve()
     assert page.link() == page.address
     assert ask(page)[0] == 200
-    assert ask(serve(ANY, OPEN))[0] == 200
+    assert ask(serve(token=OPEN))[0] == 200
 
 
 @pytest.mark.parametrize(
@@ -245,7 +245,7 @@ def test_refusals_say_nothing_of_what_was_asked_and_have_all_headers(serve, cont
 def test_a_path_that_is_no_address_is_nothing(serve):
     page = serve()
     assert b"404" in talk(page, b"GET //[ HTTP/1.0\r\nHost: localhost\r\n\r\n").partition(b"\r\n")[0]
-    wide = serve(ANY)
+    wide = serve(token=TOKEN)
     assert b"401" in talk(wide, b"GET //[?token=a HTTP/1.0\r\nHost: localhost\r\n\r\n").partition(b"\r\n")[0]
 
 

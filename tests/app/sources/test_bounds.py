@@ -11,6 +11,7 @@ import pytest
 
 from lightgesture.errors import InputError
 from lightgesture.sources import decoding, inflate, pictures, video
+from lightgesture.sources.bag_messages import PROTOBUF, read_message
 from lightgesture.sources.picture_size import picture_size
 from lightgesture.sources.pictures import decode_picture, read_picture
 from lightgesture.sources.video import VideoFile
@@ -127,3 +128,19 @@ def test_a_chunk_that_unpacks_to_too_much_is_cut_there(monkeypatch):
     monkeypatch.setattr(inflate, "LARGEST", 1 << 20)
     assert len(inflate.inflate(packed, "bz2")) == 1 << 20
     assert len(inflate.inflate(bytes(2 << 20), "none")) == 1 << 20
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"\x08" + b"\xff" * 9 + b"\x7f",  # a time of which the number is taken for a count of bytes
+        b"\x08\x80\x80\x80\x80\x08",
+        b"\x30\x80\x80\x80\x80\x04",  # data that are a number
+        b"\x10" + b"\xff" * 1000,  # a number without an end
+        b"\x12\x04wide",  # a width that is a text
+        b"\x0a\x06\x0a\x04\x08\x01\x10\x02",  # seconds that are a message
+    ],
+)
+def test_fields_of_another_kind_are_refused_before_they_are_taken_for_a_size(content):
+    with pytest.raises(ValueError, match="cannot be read"):
+        read_message("foxglove/RawImage", content, PROTOBUF)

@@ -55,13 +55,16 @@ class Tally:
 
 
 class Feeder:
-    """Feeds inputs to a target and notes faults. found: the folder for inputs that made one."""
+    """Feeds inputs to a target and notes faults.
 
-    def __init__(self, target: str, tally: Tally, found: Path) -> None:
+    found: the folder for inputs that made one. limit_s: seconds after which it ends the process.
+    """
+
+    def __init__(self, target: str, tally: Tally, found: Path, limit_s: float = float("inf")) -> None:
         from .targets import TARGETS
 
         self._run, self._tally, self._found = TARGETS[target].run, tally, found
-        self._last = last_of(target)
+        self._last, self._limit_s = last_of(target), limit_s
 
     def __call__(self, content: bytes) -> None:
         from .scratch import feed
@@ -80,6 +83,10 @@ class Feeder:
             self._keep("slow", content, TimeoutError(f"took {took_s:.1f} s"))
         tally.slowest_s = max(tally.slowest_s, round(took_s, 3))
         tally.inputs += 1
+        if time.monotonic() > tally.start_s + self._limit_s:
+            tally.note()
+            # At once: threads of native libraries may keep an orderly end from coming to an end.
+            os._exit(0)
         if time.monotonic() > tally.start_s + tally.seconds + NOTED_EVERY_S or tally.inputs == 1:
             tally.note()
 
@@ -113,10 +120,10 @@ def run_atheris(target: str, seconds: float, corpus: Path, tally: Tally, found: 
     with atheris.instrument_imports(include=list(INSTRUMENTED)):
         from .targets import CORPUS
 
-        feeder = Feeder(target, tally, found)
+        feeder = Feeder(target, tally, found, seconds)
     options = [
         "fuzz",
-        f"-max_total_time={max(1, int(seconds))}",
+        f"-max_total_time={int(2 * seconds) + 1}",
         f"-max_len={LONGEST_INPUT}",
         f"-rss_limit_mb={MEMORY_MIB}",
         f"-timeout={int(4 * SLOW_S)}",

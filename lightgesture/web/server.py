@@ -210,7 +210,7 @@ class _Handler(BaseHTTPRequestHandler):
             return False
         return True
 
-    def send_error(self, code: int, *_more: str | None) -> None:
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:  # noqa: ARG002 - the base's
         """A line in place of the page that the base class makes of what it was sent."""
         status = HTTPStatus(code)
         self.request_version = self.protocol_version  # which is empty after a line that is none

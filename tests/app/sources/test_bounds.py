@@ -92,6 +92,26 @@ def test_a_picture_that_promises_too_much_is_refused_unopened(tmp_path, monkeypa
     assert decode_picture(content) is None
 
 
+def test_a_chunk_of_a_png_that_goes_beyond_the_end_is_never_decoded(tmp_path, monkeypatch):
+    """Of such a file of 73 bytes OpenCV made four gigabytes."""
+    monkeypatch.setattr(cv2, "imdecode", lambda *_: pytest.fail("it was decoded"))
+    content = png(12, 8)
+    place = content.index(b"IDAT")
+    for length in (1 << 24, len(content), (1 << 32) - 1):
+        hostile = content[: place - 4] + struct.pack(">I", length) + content[place:]
+        (tmp_path / "bomb.png").write_bytes(hostile)
+        assert picture_size(hostile) is None
+        with pytest.raises(InputError, match="no picture that can be read"):
+            read_picture(tmp_path / "bomb.png")
+
+
+def test_the_frames_of_an_animation_count():
+    head, end = png(12, 8).split(b"\0\0\0\x08IDAT")
+    frame = struct.pack(">IIIII", 0, 60_000, 50_000, 0, 0) + bytes(6)
+    content = head + struct.pack(">I4s", len(frame), b"fcTL") + frame + bytes(4) + b"\0\0\0\x08IDAT" + end
+    assert picture_size(content) == (60_000, 50_000)
+
+
 def test_a_picture_file_that_is_too_large_is_refused_unread(tmp_path, monkeypatch):
     monkeypatch.setattr(pictures, "LARGEST_FILE", 100)
     (tmp_path / "large.png").write_bytes(bytes(101))

@@ -33,7 +33,7 @@ def picture_size(content: bytes) -> Size | None:
         for start, read in _FORMATS:
             if content.startswith(start):
                 return read(content)
-    except (struct.error, IndexError, ValueError):
+    except (struct.error, IndexError, OverflowError, ValueError):  # a place beyond what Python can count
         pass
     return None
 

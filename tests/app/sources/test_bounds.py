@@ -75,7 +75,10 @@ def test_what_is_cut_has_a_size_or_none(suffix):
         assert size is None or (size[0] <= SIZE[0] and size[1] <= SIZE[1])
 
 
-@pytest.mark.parametrize("content", [b"", b"GIF89a" + bytes(40), b"<svg/>", b"\0" * 64])
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"GIF89a" + bytes(40), b"<svg/>", b"\0" * 64, b"II+\0\x08\0\0\0" + b"\xff" * 8 + bytes(40)],
+)
 def test_other_files_are_no_pictures(content):
     assert picture_size(content) is None
     assert decode_picture(content) is None

@@ -52,7 +52,9 @@ def main() -> int:
     if args.table:
         return _table(args.work, names)
     if args.keep:
-        return max(keep(name, args.work / "corpus" / name) for name in names)
+        for name in names:
+            print(f"{name}: {keep(name, args.work / 'corpus' / name)} inputs more")
+        return 0
     share_s = args.seconds / len(names)
     return max(_fuzz(name, args.engine, share_s, args.work) for name in names)
 

@@ -4,8 +4,11 @@ A model file may come from anybody. So what the zip's directory promises (how ma
 checked before a member is opened, and what a member's own header promises before its data are read.
 """
 
+import io
 import json
 import math
+import re
+import stat
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping
@@ -14,6 +17,8 @@ from typing import IO, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lightgesture.features.files import FileRefusedError, read_whole
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -26,10 +31,20 @@ LARGEST_HEADER: Final = 2**18
 MOST_MEMBERS: Final = 256
 """Arrays of one archive; ours have up to 40, those of older versions 150."""
 MOST_AXES: Final = 4
-KINDS: Final = "iufU"
-"""Kinds of dtype: whole numbers, floats, text. Objects, which would be pickles, are none of them."""
+LONGEST_LAYOUT: Final = 1024
+"""Bytes of the text that tells shape and dtype of an array; NumPy writes 118 of them."""
 WRITTEN_AS: Final = ".npy"
 """What follows the name of each member."""
+
+_MAGIC = {b"\x93NUMPY\x01\x00": 2, b"\x93NUMPY\x02\x00": 4}
+"""How an array begins in either version, and the bytes in which the length of its text follows."""
+
+_LAYOUT = re.compile(
+    rb"\{'descr': '([<>|=]?[iufU][0-9]{1,5})', 'fortran_order': (True|False), "
+    rb"'shape': \(((?:[0-9]{1,12}, ?)*(?:[0-9]{1,12})?)\), *\}\s*"
+)
+"""The text as NumPy writes it: dtypes of whole numbers, floats and text, none of objects, which would be pickles. It
+is matched and never evaluated."""
 
 _DAMAGES = (
     ValueError,
@@ -66,9 +81,7 @@ def read_archive(
     ArchiveError.
     """
     try:
-        if file.stat().st_size > LARGEST_FILE:
-            raise ArchiveError(file, f"is larger than {LARGEST_FILE >> 20} MiB")
-        with zipfile.ZipFile(file) as archive:
+        with zipfile.ZipFile(io.BytesIO(read_whole(file, LARGEST_FILE))) as archive:
             members = _members(archive)
             if HEADER not in members:
                 raise ArchiveError(file, "has no header, so it is of an older version or no file of ours")
@@ -80,6 +93,8 @@ def read_archive(
             }
     except ArchiveError:
         raise
+    except FileRefusedError as error:
+        raise ArchiveError(file, str(error.strerror)) from error
     except OSError as error:
         raise ArchiveError(file, f"cannot be read ({error.strerror or error})", is_missing=True) from error
     except _DAMAGES as error:
@@ -99,6 +114,8 @@ def _members(archive: zipfile.ZipFile) -> dict[str, zipfile.ZipInfo]:
         name = entry.filename.removesuffix(WRITTEN_AS)
         if name == entry.filename or not name.isidentifier() or name in members:
             raise ValueError(f"{entry.filename[:64]!r} is no name of an array, or stands twice")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise ValueError(f"{entry.filename} is a link")
         # Other methods may ask for memory by a number in the data.
         if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise ValueError(f"{entry.filename} is packed by another method than deflate")
@@ -118,12 +135,8 @@ def _header(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> dict[str, Any]:
 def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:
     """One array, after its shape and dtype were found to fit the size that the directory tells. Raises ValueError."""
     with archive.open(entry) as stream:
-        shape, is_fortran, dtype = _layout(stream)
-        if dtype.kind not in KINDS or dtype.hasobject:
-            raise ValueError(
-                f"{entry.filename} holds {dtype}, a pickle perhaps; only numbers and text are read"
-            )
-        if len(shape) > MOST_AXES or min(shape, default=0) < 0:
+        shape, is_fortran, dtype = _layout(stream, entry.filename)
+        if len(shape) > MOST_AXES:
             raise ValueError(f"{entry.filename} has the shape {shape[:8]}")
         size = math.prod(shape) * dtype.itemsize
         if size != entry.file_size - stream.tell():
@@ -137,14 +150,22 @@ def _array(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> NDArray[Any]:
     return np.frombuffer(content, dtype).reshape(shape, order="F" if is_fortran else "C")
 
 
-def _layout(stream: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """Shape, whether it is in column order, dtype."""
-    version = np.lib.format.read_magic(stream)
-    if version == (1, 0):
-        return np.lib.format.read_array_header_1_0(stream)
-    if version == (2, 0):
-        return np.lib.format.read_array_header_2_0(stream)
-    raise ValueError(f"arrays of version {version}")
+def _layout(stream: IO[bytes], name: str) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Shape, whether it is in column order, dtype. Raises ValueError."""
+    width = _MAGIC.get(stream.read(8))
+    if width is None:
+        raise ValueError(f"{name} is no array of version 1 or 2")
+    length = int.from_bytes(stream.read(width), "little")
+    if length > LONGEST_LAYOUT:
+        raise ValueError(f"{name} describes itself in {length} bytes")
+    match = _LAYOUT.fullmatch(stream.read(length))
+    if match is None:
+        raise ValueError(f"{name} holds something else than numbers or text, a pickle perhaps")
+    shape = tuple(int(side) for side in match[3].split(b",") if side.strip())
+    try:
+        return shape, match[2] == b"True", np.dtype(match[1].decode("ascii"))
+    except TypeError as error:  # seven bytes for a whole number
+        raise ValueError(f"{name}: {error}") from None
 
 
 def check_format(file: Path, header: Mapping[str, Any], kind: str, version: int) -> None:

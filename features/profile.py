@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.files import FileRefusedError, read_whole
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Image
 
@@ -87,9 +88,9 @@ def load_profile(path: str | os.PathLike[str]) -> ColourProfile:
     """Read a profile. Raises ProfileError."""
     file = Path(path)
     try:
-        if file.stat().st_size > LARGEST_FILE:
-            raise ValueError(f"larger than {LARGEST_FILE} bytes")
-        return _parse(json.loads(file.read_text(encoding="utf-8")))
+        return _parse(json.loads(read_whole(file, LARGEST_FILE).decode("utf-8")))
+    except FileRefusedError as error:
+        raise ProfileError(f"{file}: no valid colour profile ({error.strerror}); {REMEDY}") from None
     except OSError as error:
         raise ProfileError(f"{file}: cannot be read ({error.strerror}); {REMEDY}") from None
     except (ValueError, RecursionError) as error:

@@ -42,6 +42,7 @@ AT_MODULE_LEVEL = {
         "fsm/language/document.py",
         "fsm/language/schema.py",
         "lightgesture/config/*.py",
+        "lightgesture/grammar/replay.py",
         "mavlink_map.py",
         "lightgesture/vehicle/profile*.py",
         "lightgesture/vehicle/steps.py",

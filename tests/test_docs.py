@@ -15,6 +15,7 @@ from lightgesture.cli import COMMANDS
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = [
     ROOT / "README.md",
+    ROOT / "SECURITY.md",
     *sorted((ROOT / "docs").glob("*.md")),
     ROOT / "benchmarks" / "README.md",
     ROOT / "lightgesture" / "data" / "export.md",

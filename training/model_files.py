@@ -14,11 +14,11 @@ from lightgesture.features.find import selector_file
 from lightgesture.features.find.bank import Bank
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
 from lightgesture.features.find.trees import Trees
+from lightgesture.features.net.flatbuffer import network_arrays
 from lightgesture.models import cnn_file, svm_file
 from lightgesture.models.cnn import CnnModel
 from lightgesture.models.svm_file import SvmModel
 from lightgesture.results.atomic import replacing
-from lightgesture.training.nets.flatbuffer import network_arrays
 
 
 def write_cnn_model(model: CnnModel, path: Path) -> None:

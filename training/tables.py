@@ -14,9 +14,13 @@ from pathlib import Path
 from typing import Final
 
 from lightgesture.errors import InputError
+from lightgesture.features.files import read_whole
 
 SEPARATORS: Final = ",;\t"
 """What may stand between cells; the one that is most frequent in the header does."""
+
+LARGEST_TABLE: Final = 256 << 20
+"""Bytes; a million rows take a hundred million."""
 
 _DECLARED = re.compile(r"sep=(.)\r?\n", re.IGNORECASE)
 """First line by which Excel is told the separator."""
@@ -64,7 +68,7 @@ def _open(path: Path, remedy: str) -> tuple[str, int, str]:
 
 def _read(path: Path, remedy: str) -> bytes:
     try:
-        return path.read_bytes()
+        return read_whole(path, LARGEST_TABLE)
     except OSError as error:
         raise InputError(f"{path}: cannot be read as a CSV table ({error.strerror}); {remedy}") from None
 

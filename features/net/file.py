@@ -1,7 +1,8 @@
 """A network from two members of an archive: its `.tflite` file, and the layout that says what stands where in it.
 
-The weights are in the archive once. LiteRT reads the `.tflite` as it is, and NumPy looks at the same bytes through the
-places that the layout names, so that the two cannot differ.
+The weights are in the archive once, in the `.tflite`. They are looked at through the places that the layout names, and
+nothing else of that file is believed: LiteRT is given it only where it is, byte for byte, what is written anew of what
+was checked (`flatbuffer`).
 """
 
 import hashlib

@@ -120,10 +120,18 @@ def _serving(
     obeys, is_extension = settings.obey is not None, settings.web_blueos
     grammar = pipeline.decoder.grammar
     page = stack.enter_context(
-        WebListener(settings.web, settings.web_host, draw, grammar, obeys=obeys, is_extension=is_extension)
+        WebListener(
+            settings.web,
+            settings.web_host,
+            draw,
+            grammar,
+            obeys=obeys,
+            is_extension=is_extension,
+            token=settings.web_token,
+        )
     )
     if not settings.quiet:
-        report(f"the page is at {page.address}")
+        report(f"the page is at {page.link()}")
     return [page]
 
 

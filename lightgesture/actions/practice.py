@@ -76,11 +76,15 @@ def run_practice(source_name: str, settings: DecodeSettings, plan: Plan) -> Exit
         )
         page = stack.enter_context(
             WebListener(
-                settings.web or 0, settings.web_host, None if settings.mirrored else mirror_drawing(), grammar
+                settings.web or 0,
+                settings.web_host,
+                None if settings.mirrored else mirror_drawing(),
+                grammar,
+                token=settings.web_token,
             )
         )
         if not settings.quiet:
-            report(f"open {page.address}practice in a browser")
+            report(f"open {page.link('practice')} in a browser")
         practice = Guide(session, pipeline, page, tell, report, stopping)
         if isinstance(source, Source):
             status = _run_recording(source, pipeline, practice, stopping, report, settings.web is not None)

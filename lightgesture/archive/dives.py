@@ -40,7 +40,7 @@ def refuse_foreign(folder: Path) -> None:
 def write_dives(folder: Path) -> None:
     """Write the table from the tables of all inputs that lie in the folder, whichever run made them; without any, none.
 
-    UsageError: it cannot be written.
+    UsageError: it cannot be written, or one of these tables was damaged.
     """
     tables = sorted(
         (path for path in folder.glob("*.csv") if is_ours(path)), key=lambda path: natural_key(path.name)
@@ -54,7 +54,13 @@ def write_dives(folder: Path) -> None:
         table: csv.DictWriter[str] = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         table.writeheader()
         for path in tables:
-            table.writerows(_rows(path))
+            try:
+                table.writerows(_rows(path))
+            except (csv.Error, KeyError, TypeError, ValueError, OverflowError) as error:
+                reason = " ".join(str(error).split())[:200]
+                raise UsageError(
+                    f"{path}: is damaged ({type(error).__name__}: {reason}); decode its input again, or move it away"
+                ) from None
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:

@@ -18,11 +18,14 @@ from lightgesture.archive.tasks import Outcome, Task
 from lightgesture.config.opening import make_folder
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
+from lightgesture.features.files import read_whole
 from lightgesture.results.atomic import replacing
 from lightgesture.results.ownership import is_ours
 
 MANIFEST = ".lightgesture.json"
 LOCK = ".lightgesture.lock"
+LARGEST_MANIFEST = 64 << 20
+"""Bytes; an input takes some hundreds."""
 FORMAT = 1
 """Version of the manifest; one of another version is as good as none."""
 
@@ -155,7 +158,7 @@ def _sweep(path: Path) -> None:
 def _read(path: Path) -> dict[str, dict[str, Any]]:
     """The entries of a manifest; none where it is missing, damaged or of another version: then all is done anew."""
     try:
-        content = json.loads(path.read_text(encoding="ascii"))
+        content = json.loads(read_whole(path, LARGEST_MANIFEST).decode("ascii"))
         if content["format"] != FORMAT:
             return {}
         return {stem: entry for stem, entry in content["inputs"].items() if _is_entry(entry)}

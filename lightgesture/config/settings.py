@@ -308,6 +308,14 @@ class DecodeSettings(BaseModel):
         only=(LIVE, PRACTICE),
         min_length=1,
     )
+    web_token: str | None = _option(
+        None,
+        "what browsers must name where the page is served to the network, 8 to 128 letters, digits, - or _ (default: a"
+        " new one at each start, printed with the page's address); none: whoever reaches it may look",
+        "TOKEN",
+        only=(LIVE, PRACTICE),
+        pattern=r"^(none|[A-Za-z0-9_-]{8,128})$",
+    )
     web_blueos: bool = _option(
         False,
         "serve the page as an extension of BlueOS: listed and shown by it, under any name that ends in .local",

@@ -14,11 +14,14 @@ from numpy.typing import NDArray
 
 from lightgesture._version import __version__
 from lightgesture.errors import UsageError
+from lightgesture.features.files import read_whole
 
 FORMAT: Final = 1
 """Version of the layout; raised whenever an older reader would misread a newer folder."""
 MADE_BY: Final = "lightgesture export"
 MANIFEST: Final = "manifest.json"
+LARGEST_MANIFEST: Final = 1 << 20
+"""Bytes of the list of files that is read back."""
 ALIGNMENT: Final = 16
 """Arrays begin at multiples of so many bytes, so that a port can map a file and use it as it lies."""
 
@@ -122,7 +125,7 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
 def _known(folder: Path) -> set[str]:
     """Names of the files that the export in this folder wrote; none where it holds no export."""
     try:
-        manifest = json.loads((folder / MANIFEST).read_bytes())
+        manifest = json.loads(read_whole(folder / MANIFEST, LARGEST_MANIFEST))
         return {MANIFEST, *manifest["files"]} if manifest["made_by"] == MADE_BY else set()
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()

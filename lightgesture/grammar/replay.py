@@ -2,7 +2,10 @@
 
 import json
 from collections.abc import Iterator
-from typing import Any
+from itertools import count
+from typing import Annotated, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from lightgesture.errors import UsageError
 from lightgesture.fsm import UNSEEN, Decoder, Grammar, Sign, Signs
@@ -10,6 +13,36 @@ from lightgesture.grammar.report import tell
 
 MOST_READINGS = 3
 """Readings that are told of each sentence."""
+
+LONGEST_LINE: Final = 1 << 20
+"""Characters of a record; a longer line is cut there and refused."""
+
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class _Record(BaseModel):
+    """What is looked at of a record; it may have more."""
+
+    model_config = ConfigDict(strict=True, frozen=True)
+
+
+class _Hand(_Record):
+    side: Literal["left", "right"]
+    token: str | None
+    confidence: Share
+    probabilities: dict[str, Share]
+    reason: str | None
+
+
+class _Card(_Record):
+    word: str | None
+
+
+class _Frame(_Record):
+    frame: int
+    time_s: float
+    hands: list[_Hand] = Field(default_factory=list)
+    signs: list[_Card] | None = None
 
 
 def explain_records(grammar: Grammar, path: str) -> list[str]:
@@ -19,14 +52,14 @@ def explain_records(grammar: Grammar, path: str) -> list[str]:
     """
     decoder = Decoder(grammar, rule="sentence")
     lines: list[str] = []
-    count = 0
+    frames = 0
     for record in _frames(path):
-        count += 1
-        events = decoder.step(_signs(record), record["time_s"], record["frame"])
-        lines += [f"{record['time_s']:.2f} s  {text}" for text in tell(events)]
+        frames += 1
+        events = decoder.step(_signs(record), record.time_s, record.frame)
+        lines += [f"{record.time_s:.2f} s  {text}" for text in tell(events)]
         if any(event.type in ("instruction", "rejected") for event in events):
             lines += _readings(decoder)
-    if not count:
+    if not frames:
         raise UsageError(
             f"{path}: no frame record with probabilities; record some: decode VIDEO --frames --json"
         )
@@ -43,36 +76,46 @@ def _readings(decoder: Decoder) -> Iterator[str]:
         )
 
 
-def _frames(path: str) -> Iterator[dict[str, Any]]:
+def _frames(path: str) -> Iterator[_Frame]:
     """The frame records of a file whose hands all have probabilities."""
     try:
         with open(path, encoding="utf-8") as stream:
-            for number, line in enumerate(stream, 1):
-                try:
-                    record = json.loads(line)
-                    if record["type"] == "frame" and _is_whole(record):
-                        yield record
-                except (ValueError, KeyError, TypeError) as error:
-                    raise UsageError(
-                        f"{path}: line {number} is no record ({error}); record it again"
-                    ) from None
+            for number in count(1):
+                line = stream.readline(LONGEST_LINE)
+                if not line:
+                    return
+                frame = _frame(line, f"{path}: line {number}")
+                if frame is not None:
+                    yield frame
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise UsageError(f"{path}: cannot be read ({reason}); name a file of records") from None
 
 
-def _is_whole(record: dict[str, Any]) -> bool:
-    is_whole = all("probabilities" in hand for hand in record.get("hands", ()))
-    return record["time_s"] is not None and is_whole
+def _frame(line: str, place: str) -> _Frame | None:
+    """A line as a frame; None: it is another record, or one that nothing can be told of."""
+    try:
+        record = json.loads(line)
+        if record["type"] != "frame" or record["time_s"] is None:
+            return None
+        if not all("probabilities" in hand for hand in record.get("hands", ())):
+            return None
+        return _Frame.model_validate(record)
+    except ValidationError as error:
+        detail = error.errors(include_url=False)[0]
+        reason = f"{'.'.join(map(str, detail['loc']))}: {detail['msg']}"
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        reason = str(error)
+    raise UsageError(f"{place} is no record ({' '.join(reason.split())[:200]}); record it again")
 
 
-def _signs(record: dict[str, Any]) -> Signs:
+def _signs(record: _Frame) -> Signs:
     """The signs of the hands, or of the cards, of a record."""
-    if "signs" in record:
-        words = [card["word"] for card in record["signs"] if card["word"] is not None]
+    if record.signs is not None:
+        words = [card.word for card in record.signs if card.word is not None]
         return Signs(*(Sign(word, is_word=True) for word in dict.fromkeys(words[:2])))
     signs = {
-        hand["side"]: Sign(hand["token"], hand["confidence"], hand["probabilities"], True, hand["reason"])
-        for hand in record["hands"]
+        hand.side: Sign(hand.token, hand.confidence, hand.probabilities, True, hand.reason)
+        for hand in record.hands
     }
     return Signs(signs.get("left", UNSEEN), signs.get("right", UNSEEN))

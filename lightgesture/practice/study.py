@@ -11,11 +11,14 @@ from statistics import fmean
 from typing import Any, Final
 
 from lightgesture.errors import UsageError
+from lightgesture.features.files import read_whole
 from lightgesture.practice.tasks import STUDY
 
 LEVELS: Final = ("beginner", "medium", "expert")
 PREFIX: Final = "person-"
 TABLE: Final = "study.csv"
+LARGEST_FILE: Final = 1 << 20
+"""Bytes of a person's results; they take some thousands."""
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,39}")
 
@@ -50,13 +53,14 @@ def read_people(folder: str) -> list[dict[str, Any]]:
     people = []
     for path in sorted(Path(folder).glob(f"{PREFIX}*.json")):
         try:
-            content = json.loads(path.read_text(encoding="utf-8"))
+            content = json.loads(read_whole(path, LARGEST_FILE).decode("utf-8"))
             kinds = {
                 (item["kind"], item["mistakes"], item["slips"], item["done"]) for item in content["sentences"]
             }
             if content["level"] not in LEVELS or not kinds:
                 raise ValueError("it has no level")
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            tabulate([content])
+        except (OSError, ValueError, LookupError, TypeError, ArithmeticError, RecursionError) as error:
             raise UsageError(f"{path}: is no result of a study ({error}); move it away") from None
         people.append(content)
     return people

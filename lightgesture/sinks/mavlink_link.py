@@ -1,6 +1,7 @@
 """A link of MAVLink 2 in both directions, of which no call waits."""
 
 import os
+import time
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final
@@ -10,6 +11,22 @@ from lightgesture.sinks.outbox import SinkError
 
 RECEIVED_READS: Final = 500
 """How often at most is read at a time: enough for a second of a busy link."""
+
+EXPECTED: Final = frozenset(
+    {
+        *("HEARTBEAT", "COMMAND_ACK", "PARAM_VALUE", "PARAM_ERROR", "CAMERA_IMAGE_CAPTURED"),
+        *("MISSION_COUNT", "MISSION_CURRENT", "MISSION_ITEM_REACHED"),
+        *("MANUAL_CONTROL", "RC_CHANNELS", "RC_CHANNELS_OVERRIDE"),
+        *("SYSTEM_TIME", "ATTITUDE", "GLOBAL_POSITION_INT", "LOCAL_POSITION_NED"),
+    }
+)
+"""Messages that anything is done with; all others, and damaged ones, are dropped as they come."""
+
+MOST_CLIENTS: Final = 8
+"""Addresses that a server on UDP sends to; whoever sends a datagram becomes one."""
+
+CLIENT_S: Final = 30.0
+"""Seconds of silence after which an address is forgotten where there are more."""
 
 _READ_BYTES: Final = 4096
 _SCHEMES = ("udpout", "udpin", "udpbcast", "tcp", "tcpin")
@@ -69,7 +86,7 @@ class Link:
             self._connection = None
 
     def receive(self) -> list[Any]:
-        """The messages that came since the last call. SinkError: the link is dead.
+        """The messages that are `EXPECTED` and came since the last call. SinkError: the link is dead.
 
         A server learns so who listens, and a closed link shows itself.
         """
@@ -82,8 +99,9 @@ class Link:
                 found += self._parser.parse_buffer(content) or []
         except OSError as error:
             raise SinkError(f"{self.name}: broke off ({reason_of(error)})") from None
+        self._bound_clients()
         self._check()
-        return [message for message in found if not message.get_type().startswith(("BAD_DATA", "UNKNOWN"))]
+        return [message for message in found if message.get_type() in EXPECTED]
 
     def send(self, message: Any, system: int, component: int) -> None:
         """Send a message as from a system and a component. SinkError: the link is dead."""
@@ -116,6 +134,18 @@ class Link:
         if scheme == "tcpin":
             return None if self._connection.port is None else Wire(self._connection.port.fileno())
         return Wire(self._connection.fd)
+
+    def _bound_clients(self) -> None:
+        """Forget addresses beyond the first few that are heard: others would fill the memory, and be sent to."""
+        clients = getattr(self._connection, "clients", None)
+        if not isinstance(clients, set) or len(clients) <= MOST_CLIENTS:
+            return
+        alive, now_s = self._connection.clients_last_alive, time.time()
+        heard = [address for address, seen_s in alive.items() if now_s - seen_s <= CLIENT_S]
+        kept = set(heard[:MOST_CLIENTS])
+        clients.intersection_update(kept)
+        for address in [address for address in alive if address not in kept]:
+            del alive[address]
 
     def _check(self) -> None:
         if self._connection.portdead:

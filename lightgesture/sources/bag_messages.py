@@ -45,6 +45,9 @@ _NUMBERS: dict[str, dict[int, str]] = {
 }
 """Likewise the numbers of the fields of a protocol buffer."""
 
+VARINT_BITS: Final = 70
+"""Of the longest whole number of a protocol buffer, ten bytes of seven each."""
+
 _PACKETS = ("foxglove/CompressedVideo", "ffmpeg_image_transport/FFMPEGPacket")
 _SIZES = {"u1": "B", "u4": "I", "u8": "Q"}
 
@@ -147,18 +150,32 @@ def _read_fields(kind: str, content: bytes, written: str) -> dict[str, Any]:
 
 def _read_protobuf(kind: str, content: bytes) -> dict[str, Any]:
     """Fields by their numbers; a time is a message of its own: seconds, then nanoseconds."""
-    names = _NUMBERS[kind]
+    names, kinds = _NUMBERS[kind], dict(_LAYOUTS[kind])
     fields: dict[str, Any] = {}
     for number, value in _numbered(content):
         name = names.get(number)
-        if name == "stamp":
-            parts = dict(_numbered(bytes(value)))
-            fields[name] = parts.get(1, 0) * NANOSECONDS + parts.get(2, 0)
-        elif name == "data":
+        if name is None:
+            continue
+        what = kinds[name]
+        # A field of another kind than its name has: a number in the place of bytes would be taken for their count.
+        if isinstance(value, int) != (what in _SIZES):
+            raise ValueError(f"cannot be read ({name} is of another kind)")
+        if what == "time":
+            seconds, rest = (_whole(dict(_numbered(bytes(value))), part) for part in (1, 2))
+            fields[name] = seconds * NANOSECONDS + rest
+        elif what == "bytes":
             fields[name] = np.frombuffer(value, np.uint8)
-        elif name is not None:
+        else:
             fields[name] = value if isinstance(value, int) else bytes(value).decode("utf-8", "replace")
     return fields
+
+
+def _whole(parts: dict[int, Any], number: int) -> int:
+    """A whole number of a message, 0 where it stands not there."""
+    value = parts.get(number, 0)
+    if not isinstance(value, int):
+        raise ValueError("cannot be read (its time is no number)")
+    return value
 
 
 def _numbered(content: bytes) -> list[tuple[int, Any]]:
@@ -194,3 +211,5 @@ def _varint(content: bytes, place: int) -> tuple[int, int]:
         if byte < 0x80:
             return value, place
         shift += 7
+        if shift >= VARINT_BITS:
+            raise ValueError("cannot be read (a number has no end)")

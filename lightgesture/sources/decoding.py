@@ -12,6 +12,7 @@ from lightgesture.sources.conversion import Converter, Deinterlacer
 if TYPE_CHECKING:
     from av.container import InputContainer
     from av.packet import Packet
+    from av.video.codeccontext import VideoCodecContext
     from av.video.frame import VideoFrame
     from av.video.stream import VideoStream
 
@@ -30,6 +31,15 @@ REORDERED: Final = 16
 
 ONE_FRAME_A_PACKET: Final = ("hevc",)
 """Codecs that drop frames without an error where others are lost; each of their packets is a frame."""
+
+
+MAX_PIXELS: Final = 40_000_000
+"""Most pixels of a frame, against files that promise more than fits the memory; 8K has 33 million."""
+
+
+def bound(context: "VideoCodecContext") -> None:
+    """Have a decoder refuse frames of more than MAX_PIXELS, before it makes room for them."""
+    context.options = {**context.options, "max_pixels": str(MAX_PIXELS)}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +67,7 @@ class StreamDecoder:
         self, container: "InputContainer", stream: "VideoStream", tell: Callable[[str], None]
     ) -> None:
         self._container, self._stream = container, stream
+        bound(stream.codec_context)
         self._converter, self._deinterlacer = Converter(tell), Deinterlacer()
         self._in_filter: deque[int] = deque()
         self._lacks_order = container.format.name in ONLY_DECODING_ORDER

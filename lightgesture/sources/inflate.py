@@ -2,27 +2,35 @@
 
 import sys
 from importlib import import_module
-from typing import Any
+from typing import Any, Final
+
+LARGEST: Final = 256 << 20
+"""Bytes that a chunk or a message may unpack to; what goes beyond is left out. Recorders write a megabyte or a few."""
+
+_PIECE: Final = 1 << 16
 
 
 def inflate(content: bytes, compression: str) -> bytes:
-    """What was compressed, as much of it as can be had. Nothing of a kind that is not known here."""
-    whole = b""
+    """What was compressed, as much of it as can be had and `LARGEST` allows. Nothing of a kind that is not known
+    here."""
+    whole = bytearray()
     try:
         decompress = _decompressor(compression)
-        for start in range(0, len(content), 1 << 16):  # in pieces, so that what is before damage is kept
-            whole += decompress(content[start : start + (1 << 16)])
+        for start in range(0, len(content), _PIECE):  # in pieces, so that what is before damage is kept
+            whole += decompress(content[start : start + _PIECE], LARGEST - len(whole))
+            if len(whole) >= LARGEST:
+                break
     except (OSError, EOFError, RuntimeError, ValueError):
         pass
     except Exception as error:  # zstd and lz4 have errors of their own
         if type(error).__module__.split(".")[0] not in ("backports", "compression", "lz4", "_zstd"):
             raise
-    return whole
+    return bytes(whole)
 
 
 def _decompressor(compression: str) -> Any:
     if compression in ("", "none"):
-        return bytes
+        return _as_it_is
     if compression == "bz2":
         return import_module("bz2").BZ2Decompressor().decompress
     if compression == "lz4":
@@ -33,5 +41,9 @@ def _decompressor(compression: str) -> Any:
     return _nothing
 
 
-def _nothing(_: bytes) -> bytes:
+def _as_it_is(content: bytes, most_bytes: int) -> bytes:
+    return content[:most_bytes]
+
+
+def _nothing(_content: bytes, _most_bytes: int) -> bytes:
     return b""

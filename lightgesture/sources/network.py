@@ -14,6 +14,7 @@ from lightgesture.sources.types import LiveSource
 
 if TYPE_CHECKING:
     from av.container import InputContainer
+    from av.video.codeccontext import VideoCodecContext
     from av.video.stream import VideoStream
 
 NETWORK_SCHEMES = ("rtsp", "rtsps", "rtmp", "udp", "tcp")
@@ -89,7 +90,8 @@ class NetworkStream(LiveSource):
         from av.video.stream import VideoStream
 
         stream = container.streams.best("video")
-        if not isinstance(stream, VideoStream):
+        context: VideoCodecContext | None = stream.codec_context if isinstance(stream, VideoStream) else None
+        if not isinstance(stream, VideoStream) or context is None:
             raise InputError(
                 f"{self.name}: sends no pictures that can be decoded; look at what the camera sends"
             )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from lightgesture.errors import reason_of
 from lightgesture.features.types import Image
 from lightgesture.sources.conversion import Converter
+from lightgesture.sources.decoding import bound
 
 if TYPE_CHECKING:
     from av.video.frame import VideoFrame
@@ -41,6 +42,7 @@ class PacketDecoder:
             raise ValueError(f"is coded as {format!r}, which is not known here; record H.264 or H.265")
         context = av.CodecContext.create(name, "r")
         assert isinstance(context, VideoCodecContext)
+        bound(context)
         context.thread_count = 1  # more would keep pictures back
         self._context, self._converter = context, Converter(tell)
         self._pending: dict[int, int] = {}

@@ -3,7 +3,6 @@
 import os
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import cv2
@@ -12,8 +11,10 @@ from numpy.typing import NDArray
 
 from lightgesture.console import warn
 from lightgesture.errors import InputError
+from lightgesture.features.files import read_whole
 from lightgesture.features.image import BitDepth, as_bgr8
 from lightgesture.features.types import Image
+from lightgesture.sources.picture_size import picture_size
 
 PICTURE_SUFFIXES = frozenset(
     {
@@ -22,6 +23,12 @@ PICTURE_SUFFIXES = frozenset(
     }
 )
 """File names that are taken for pictures, in small letters."""
+
+LARGEST_FILE = 512 << 20
+"""Bytes of a picture file that is read."""
+
+MOST_PIXELS = 120_000_000
+"""Of a picture that is decoded: 360 MB of memory. Cameras of telephones reach 108 million."""
 
 # A depth beyond 8 bits is kept, to be scaled here; everything else is OpenCV's plain reading to BGR,
 # turned upright where the picture says so.
@@ -50,6 +57,11 @@ def read_picture(path: str | os.PathLike[str], depth: BitDepth | None = None) ->
     content = _read_bytes(name)
     if _is_cut_jpeg(content):
         raise InputError(f"{name}: the picture is cut off; copy it again or leave it out")
+    size = picture_size(content)
+    if size is not None and size[0] * size[1] > MOST_PIXELS:
+        raise InputError(
+            f"{name}: promises {size[0]} x {size[1]} pixels, more than {MOST_PIXELS:,}; make it smaller"
+        )
     image = decode_picture(content)
     if image is None:
         raise InputError(
@@ -80,7 +92,10 @@ def depth_of(name: str) -> BitDepth:
 
 
 def decode_picture(content: bytes | NDArray[np.uint8]) -> NDArray[Any] | None:
-    """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads."""
+    """The pixels of a picture file in any depth, grey as BGR; None: it is none that OpenCV reads, or too large."""
+    size = picture_size(bytes(content))
+    if size is None or size[0] * size[1] > MOST_PIXELS:
+        return None
     # imdecode and not imread, which cannot open every name on every system
     data = np.frombuffer(content, np.uint8)
     place = _scan_without_tables(data)
@@ -126,7 +141,7 @@ def _standard_tables() -> NDArray[np.uint8]:
 
 def _read_bytes(path: str) -> bytes:
     try:
-        content = Path(path).read_bytes()
+        content = read_whole(path, LARGEST_FILE)
     except FileNotFoundError:
         raise InputError(f"{path}: no such file; check the name") from None
     except IsADirectoryError:

@@ -10,11 +10,11 @@ import struct
 import time
 from io import BytesIO
 from ipaddress import ip_address
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 from urllib.parse import urlsplit
 
 from lightgesture.errors import InputError, UsageError, reason_of
+from lightgesture.features.files import read_whole
 from lightgesture.sources import types
 from lightgesture.sources.address import hide_login
 from lightgesture.sources.network import NetworkStream
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from av.container import InputContainer
 
 USUAL_PORT: Final = 5600
+LARGEST_DESCRIPTION: Final = 1 << 16
+"""Bytes of a file of SDP; cameras write some hundreds."""
 
 _PROTOCOLS = "udp,rtp,srtp"
 _JPEG, _TRANSPORT_STREAM, _DYNAMIC = 26, 33, 96
@@ -78,7 +80,7 @@ class RtpStream(NetworkStream):
 def read_description(path: str) -> RtpStream:
     """The stream that a file of SDP describes, not yet opened. UsageError: it is none."""
     try:
-        content = Path(path).read_bytes()
+        content = read_whole(path, LARGEST_DESCRIPTION)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read ({error.strerror}); name a file of SDP") from None
     lines = content.split()

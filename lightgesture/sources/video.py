@@ -13,13 +13,14 @@ from lightgesture.console import warn
 from lightgesture.errors import InputError
 from lightgesture.frames import Frame
 from lightgesture.sources.clock import RecordingClock, creation_time
-from lightgesture.sources.decoding import REORDERED, Picture, StreamDecoder
+from lightgesture.sources.decoding import MAX_PIXELS, REORDERED, Picture, StreamDecoder
 from lightgesture.sources.file_size import is_cut_off
 from lightgesture.sources.pictures import is_picture_name
 from lightgesture.sources.types import Source
 
 if TYPE_CHECKING:
     from av.container import InputContainer
+    from av.video.codeccontext import VideoCodecContext
     from av.video.stream import VideoStream
 
 DAMAGE_S: Final = 0.2
@@ -202,10 +203,17 @@ def _choose(container: "InputContainer", path: str) -> "VideoStream":
     from av.video.stream import VideoStream
 
     stream = container.streams.best("video")
-    if not isinstance(stream, VideoStream):
+    # PyAV gives a stream of a codec that FFmpeg does not know without a context.
+    context: VideoCodecContext | None = stream.codec_context if isinstance(stream, VideoStream) else None
+    if not isinstance(stream, VideoStream) or context is None:
         is_unknown = bool(container.streams.video)
         reason = "its codec is not known here" if is_unknown else "holds no pictures"
         raise InputError(f"{path}: {reason}; convert it or name a video")
+    if context.width * context.height > MAX_PIXELS:
+        size = f"{context.width} x {context.height}"
+        raise InputError(
+            f"{path}: promises frames of {size} pixels, more than {MAX_PIXELS:,}; make it smaller"
+        )
     for other in container.streams:
         if other.index != stream.index:
             other.discard = Discard.all

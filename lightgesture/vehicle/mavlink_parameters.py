@@ -46,6 +46,9 @@ class ParameterJob(Repeated):
         if kind == "PARAM_ERROR":
             self.reply.refuse("the vehicle has no such parameter, or does not let it be changed")
             return
+        if not math.isfinite(message.param_value):
+            self.reply.refuse("the vehicle says that it is no number")
+            return
         self._seen = seen = float(message.param_value)
         self._kinds[self._name] = message.param_type
         # Single precision on the way; a value that is cut to a whole number comes back as another one.

@@ -40,7 +40,8 @@ class WebListener:
 
     port: 0 for any that is free. host: address to listen on; all but loopback lets the whole network look.
     draw: what makes the annotated picture. grammar: of the page of signs; None: there is none. obeys: whether a vehicle
-    says what becomes of instructions. is_extension: of BlueOS, see `WebServer`. `show` never waits for a browser, and
+    says what becomes of instructions. is_extension: of BlueOS, see `WebServer`. token: what browsers must name; None: a
+    new one where the whole network may ask; `door.OPEN`: none at all. `show` never waits for a browser, and
     draws nothing itself.
     """
 
@@ -53,8 +54,9 @@ class WebListener:
         *,
         obeys: bool = False,
         is_extension: bool = False,
+        token: str | None = None,
     ) -> None:
-        self._port, self._host, self._is_extension = port, host, is_extension
+        self._port, self._host, self._is_extension, self._token = port, host, is_extension, token
         self._draw = draw or Overlay("below").draw
         self._language = None if grammar is None else Language(grammar)
         self._board = Board(None if self._language is None else self._language.expected, obeys)
@@ -81,11 +83,18 @@ class WebListener:
         host = f"[{self._host}]" if ":" in self._host else self._host
         return f"http://{host}:{self._server.server_port}/"
 
+    def link(self, page: str = "") -> str:
+        """The address of a page, "" being the first, with the token where one is asked for."""
+        token = self._server.door.token if self._server is not None else ""
+        return f"{self.address}{page}" + (f"?token={token}" if token else "")
+
     def start(self) -> None:
         """Begin to serve. UsageError: the address cannot be had."""
         try:
             more = {} if self._language is None else self._language.files()
-            self._server = WebServer(self._host, self._port, self._board, more, self._is_extension)
+            self._server = WebServer(
+                self._host, self._port, self._board, more, self._is_extension, self._token
+            )
         except OSError as error:
             raise UsageError(
                 f"--web {self._port}: cannot listen on {self._host} ({error.strerror}); take another port or --web-host"

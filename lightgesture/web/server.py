@@ -3,23 +3,26 @@
 Every browser has a thread of its own, and there is a bound to everything that one may ask for.
 """
 
-import ipaddress
+import io
 import json
-import re
 import socket
 import socketserver
 import threading
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from http import HTTPStatus
+from http.client import HTTPMessage
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from typing import Any, Final, cast
-from urllib.parse import urlsplit
+from urllib.parse import SplitResult, urlsplit
 
 from lightgesture._version import __version__
 from lightgesture.web.board import Board
+from lightgesture.web.door import Door, Refusal, name_of, token_for
+from lightgesture.web.head import read_head
 
 PAGES = {
     "/": ("page.html", "text/html; charset=utf-8"),
@@ -45,6 +48,8 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "Cache-Control": "no-store",
 }
 """Of every answer: nothing but what this server gives is loaded, and no other site may show it."""
@@ -60,6 +65,9 @@ LISTENERS: Final = 8
 CONNECTIONS: Final = 24
 """Connections of any kind at a time."""
 
+CONNECTIONS_OF_ONE: Final = 16
+"""Of these, those of one address: a browser takes up to six, a tunnel all of its browsers'."""
+
 UPDATES_PER_S: Final = 10.0
 """Most updates of the sentence and the state that a browser gets, a second."""
 
@@ -74,9 +82,6 @@ SEND_BUFFER: Final = 128 * 1024
 
 NO_FRAMES: Final = "frame-ancestors 'none'"
 """What `HEADERS` says of frames, unless it is an extension."""
-
-LOCAL_NAME: Final = re.compile(r"[a-z0-9-]{1,63}\.local")
-"""Names of multicast DNS: no other site of the internet can have one."""
 
 SERVICE: Final = {
     "name": "Diver's signs",
@@ -95,7 +100,8 @@ _BUSY = b"HTTP/1.0 503 Service Unavailable\r\nRetry-After: 5\r\nContent-Length: 
 
 class WebServer(ThreadingHTTPServer):
     """Serves a board. more: path to content and type of further files. is_extension: of BlueOS, which lists it by what
-    `/register_service` says, shows it within its own page, and calls it by any name that ends in `.local`.
+    `/register_service` says, shows it within its own page, and calls it by any name that ends in `.local`. token: what
+    browsers must name, see `door.token_for`.
 
     Raises OSError where the port or the address cannot be had.
     """
@@ -109,12 +115,15 @@ class WebServer(ThreadingHTTPServer):
         board: Board,
         more: Mapping[str, tuple[bytes, str]] | None = None,
         is_extension: bool = False,
+        token: str | None = None,
     ) -> None:
         self.board, self.is_extension = board, is_extension
-        self.names = known_names(host)
+        self.door = Door(host, token_for(host, token, is_extension), is_extension)
         self.viewers = threading.BoundedSemaphore(VIEWERS)
         self.listeners = threading.BoundedSemaphore(LISTENERS)
         self._connections = threading.BoundedSemaphore(CONNECTIONS)
+        self._of_one: Counter[str] = Counter()
+        self._counting = threading.Lock()
         folder = files("lightgesture.web") / "static"
         self.pages = {path: ((folder / name).read_bytes(), kind) for path, (name, kind) in PAGES.items()}
         self.pages |= more or {}
@@ -128,19 +137,36 @@ class WebServer(ThreadingHTTPServer):
 
     def process_request(self, request: Any, client_address: Any) -> None:
         """Hand a connection to a thread, or refuse it where there are too many."""
-        if not self._connections.acquire(blocking=False):
+        if not self._admit(client_address[0]):
             with suppress(OSError):
                 request.setblocking(False)
                 request.send(_BUSY)
             self.shutdown_request(request)
             return
-        super().process_request(request, client_address)
+        try:
+            super().process_request(request, client_address)
+        except BaseException:  # no thread is to be had
+            self._leave(client_address[0])
+            raise
+
+    def _admit(self, address: str) -> bool:
+        """Count one more connection of an address; False: it, or all together, have too many."""
+        with self._counting:
+            is_free = self._of_one[address] < CONNECTIONS_OF_ONE and self._connections.acquire(blocking=False)
+            self._of_one[address] += is_free
+            return is_free
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         """Serve one connection in its thread."""
         try:
             super().process_request_thread(request, client_address)
         finally:
+            self._leave(client_address[0])
+
+    def _leave(self, address: str) -> None:
+        with self._counting:
+            self._of_one[address] -= 1
+            self._of_one += Counter()  # which drops those at zero
             self._connections.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -162,14 +188,45 @@ class _Handler(BaseHTTPRequestHandler):
     def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002 - the base class's name
         """Nothing on standard error, which is for the decoder."""
 
-    def do_GET(self) -> None:
-        if not self._is_called_by_its_name():
-            self._refuse(
-                HTTPStatus.MISDIRECTED_REQUEST, "call this server by its address, localhost or its name"
-            )
+    def handle(self) -> None:
+        """One request; its head is read before anything of it is looked at."""
+        self.close_connection = True
+        self.headers, self.requestline, self.request_version = HTTPMessage(), "", self.protocol_version
+        head = read_head(self.connection)
+        self.connection.settimeout(CLIENT_TIMEOUT_S)
+        if isinstance(head, Refusal):
+            self._refuse(head)
             return
-        path = urlsplit(self.path).path
-        if path in self._web.pages:
+        self.rfile.close()
+        self.rfile = io.BytesIO(head)
+        self.handle_one_request()
+
+    def parse_request(self) -> bool:
+        """As its base, but for HTTP/0.9, whose answers have no headers to protect them."""
+        if not super().parse_request():
+            return False
+        if self.request_version == "HTTP/0.9":
+            self.send_error(HTTPStatus.HTTP_VERSION_NOT_SUPPORTED)
+            return False
+        return True
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:  # noqa: ARG002 - the base's
+        """A line in place of the page that the base class makes of what it was sent."""
+        status = HTTPStatus(code)
+        self.request_version = self.protocol_version  # which is empty after a line that is none
+        self._refuse(Refusal(status, status.phrase.lower()))
+
+    def do_GET(self) -> None:
+        door = self._web.door
+        refusal = door.objection(self.client_address[0], self.path, self.headers, self._cookie)
+        if refusal is not None:
+            self._refuse(refusal)
+            return
+        split = _split(self.path)
+        path = split.path
+        if path in self._web.pages and door.token and "token=" in split.query:
+            self._let_in(path)
+        elif path in self._web.pages:
             self._send(*self._web.pages[path])
         elif path == "/state.json":
             update = self._web.board.update(-1, 0, 0)
@@ -184,7 +241,21 @@ class _Handler(BaseHTTPRequestHandler):
         elif path == "/events":
             self._events()
         else:
-            self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here; the page is at /")
+            self._refuse(Refusal(HTTPStatus.NOT_FOUND, "there is nothing here; the page is at /"))
+
+    @property
+    def _cookie(self) -> str:
+        """Name of the cookie with the token; those of a machine's other ports have the same host."""
+        return f"lightgesture-{self._web.server_port}"
+
+    def _let_in(self, path: str) -> None:
+        """Put the token into a cookie and lead on to the page, so that it stands in no address that is seen."""
+        self.send_response(HTTPStatus.SEE_OTHER)
+        self.send_header("Location", path)
+        self.send_header(
+            "Set-Cookie", f"{self._cookie}={self._web.door.token}; Path=/; HttpOnly; SameSite=Lax"
+        )
+        self._send_headers(0)
 
     def _stream(self) -> None:
         board = self._web.board
@@ -219,16 +290,10 @@ class _Handler(BaseHTTPRequestHandler):
                 entry = update.entries[-1]["number"] if update.entries else entry
                 time.sleep(1.0 / UPDATES_PER_S)
 
-    def _is_called_by_its_name(self) -> bool:
-        header = self.headers.get("Host")
-        name = name_of((header or "").strip()) if self._web.is_extension else None
-        is_local = name is not None and LOCAL_NAME.fullmatch(name.lower()) is not None
-        return is_local or is_known(header, self._web.names)
-
     def _frameable(self, value: str) -> str:
         """The header that lets pages of the same machine, on any port, show this one in a frame."""
         name = name_of((self.headers.get("Host") or "").strip())
-        is_shown = name is not None and ":" not in name and self._is_called_by_its_name()
+        is_shown = name is not None and ":" not in name and self._web.door.is_called(self.headers.get("Host"))
         return value.replace(NO_FRAMES, f"frame-ancestors http://{name}:*") if is_shown else value
 
     def _last_entry(self) -> int:
@@ -242,7 +307,8 @@ class _Handler(BaseHTTPRequestHandler):
         is_free = places.acquire(blocking=False)
         try:
             if not is_free:
-                self._refuse(HTTPStatus.SERVICE_UNAVAILABLE, "too many look already; close another page")
+                text = "too many look already; close another page"
+                self._refuse(Refusal(HTTPStatus.SERVICE_UNAVAILABLE, text))
             yield is_free
         finally:
             if is_free:
@@ -251,20 +317,25 @@ class _Handler(BaseHTTPRequestHandler):
     def _begin(self, kind: str, status: HTTPStatus = HTTPStatus.OK, length: int | None = None) -> None:
         self.send_response(status)
         self.send_header("Content-Type", kind)
+        if status in (HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.TOO_MANY_REQUESTS):
+            self.send_header("Retry-After", "5")
+        if status == HTTPStatus.UNAUTHORIZED:
+            self.send_header("WWW-Authenticate", 'Bearer realm="lightgesture"')
+        self._send_headers(length)
+
+    def _send_headers(self, length: int | None) -> None:
         for name, value in HEADERS.items():
             self.send_header(name, self._frameable(value) if self._web.is_extension else value)
         if length is not None:
             self.send_header("Content-Length", str(length))
-        if status == HTTPStatus.SERVICE_UNAVAILABLE:
-            self.send_header("Retry-After", "5")
         self.end_headers()
 
     def _send(self, content: bytes, kind: str, status: HTTPStatus = HTTPStatus.OK) -> None:
         self._begin(kind, status, len(content))
         self.wfile.write(content)
 
-    def _refuse(self, status: HTTPStatus, text: str) -> None:
-        self._send(f"{text}\n".encode(), "text/plain; charset=utf-8", status)
+    def _refuse(self, refusal: Refusal) -> None:
+        self._send(f"{refusal.text}\n".encode(), "text/plain; charset=utf-8", refusal.status)
 
 
 def to_part(jpeg: bytes) -> bytes:
@@ -273,41 +344,9 @@ def to_part(jpeg: bytes) -> bytes:
     return head.encode() + jpeg + f"\r\n--{BOUNDARY}\r\n".encode()
 
 
-def known_names(host: str) -> frozenset[str]:
-    """Names that a browser may call a server by that is bound to `host`, in small letters.
-
-    A page of another site can make its own name point to this machine and read what it likes ("DNS rebinding"). It
-    cannot make a bare address do so, and it does not know the names of this machine.
-    """
-    own = socket.gethostname().lower()
-    names = {"localhost", host.lower(), own, own.split(".")[0], own.split(".")[0] + ".local"}
-    return frozenset(name for name in names if name)
-
-
-def is_known(header: str | None, names: Iterable[str]) -> bool:
-    """Whether a `Host` header, with or without a port, is an address or one of the names.
-
-    Any port is right, for a tunnel has one of its own.
-    """
-    name = name_of((header or "").strip())
-    if name is None:
-        return False
-    return name.lower().rstrip(".") in names or _is_address(name)
-
-
-def name_of(header: str) -> str | None:
-    """The name or address of a `Host` header without its port; None where it is malformed."""
-    if header.startswith("["):
-        name, bracket, port = header[1:].partition("]")
-        is_port = port == "" or (port[0] == ":" and port[1:].isdigit())
-        return name if bracket and is_port and ":" in name else None
-    name, colon, port = header.partition(":")
-    return name if name and (not colon or port.isdigit()) else None
-
-
-def _is_address(name: str) -> bool:
+def _split(address: str) -> SplitResult:
+    """The parts of what was asked for; nothing of what is no address."""
     try:
-        ipaddress.ip_address(name)
+        return urlsplit(address)
     except ValueError:
-        return False
-    return True
+        return SplitResult("", "", "", "", "")

@@ -5,7 +5,7 @@ import csv
 import pytest
 
 from lightgesture.archive.dives import COLUMNS, write_dives
-from lightgesture.errors import ExitStatus
+from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.fsm import Instruction, Rejected
 from lightgesture.results import open_writer, output_stems
 
@@ -85,3 +85,14 @@ def test_a_foreign_table_is_kept(run, make_video, tmp_path):
 def test_no_input_has_the_name_of_the_table():
     assert output_stems(["/a/dives.mp4", "/a/b.mp4"]) == ["a_dives.mp4", "b"]
     assert output_stems(["Dives"])[0].casefold() != "dives"
+
+
+@pytest.mark.parametrize(
+    "row", ["instruction", "instruction,d,0,nan,,1.0", "instruction,d,0,1e300,,1.0", "instruction,d,0,1,x,0"]
+)
+def test_a_damaged_table_is_named(tmp_path, row):
+    """As an editor, or a disk that was full, may leave it."""
+    (tmp_path / "dive.csv").write_text(f"type,source,frame,time_s,utc,start_time_s\n{row}\n")
+    with pytest.raises(UsageError, match=r"dive\.csv: is damaged .*decode its input again") as caught:
+        write_dives(tmp_path)
+    assert "\n" not in str(caught.value)

@@ -48,7 +48,7 @@ def test_every_option_may_stand_in_the_file(config):
         'size = "640x480"\ntopic = "/camera"\nudp = ["rov:9000"]\n'
         'mavlink = ["udpout:rov:14550"]\nmavlink-map = "/map.toml"\nmavlink-system = 7\n'
         'obey = "/v.toml"\nanswer = ["motion"]\nhook = ["say hello"]\n'
-        'web = 8080\nweb-host = "::1"\nweb-blueos = true\n'
+        'web = 8080\nweb-host = "::1"\nweb-token = "under-water"\nweb-blueos = true\n'
         'front-end = "tags"\ntag-detector = "apriltag"\nshapes = "/s.json"\n'
         "insecure = true\ngive-up = 90.0\nrecursive = true\njoin = true\n"
     )
@@ -74,6 +74,7 @@ def test_every_option_may_stand_in_the_file(config):
         "out": "/o",
         "web": 8080,
         "web_host": "::1",
+        "web_token": "under-water",
         "web_blueos": True,
         "debug_dir": "/d",
         "quiet": True,

@@ -1,5 +1,6 @@
 """The service and its configuration, as they lie in `deploy/`."""
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -65,3 +66,13 @@ def test_systemd_takes_the_unit(tmp_path):
     unit.write_text(UNIT.read_text("utf-8").replace(program, shutil.which("true") or "/bin/true"))
     done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd-analyze is not installed")
+def test_systemd_finds_little_that_is_exposed():
+    words = ["systemd-analyze", "security", "--offline=true", "--no-pager", "--threshold=20", str(UNIT)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    level = re.search(r"Overall exposure level for lightgesture\.service: ([0-9.]+)", done.stdout)
+    assert level is not None, done.stderr
+    assert float(level[1]) <= 2.0
+    assert done.returncode == 0

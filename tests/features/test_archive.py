@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import struct
 import zipfile
 from contextlib import suppress
@@ -136,6 +137,9 @@ def test_too_many_members_are_refused(tmp_path):
         claimed((1,), "|V4") + bytes(4),
         claimed((1,), [("x", "<f4")]) + bytes(4),
         claimed((1,))[:20],
+        claimed((1,), "<f4'\0"),
+        claimed((1,), "<i7") + bytes(7),
+        b"\x93NUMPY\x01\x00\x05\x00{'des",
         b"",
         b"\x80\x04pickle",
         b"\x93NUMPY\x09\x00" + bytes(200),
@@ -156,6 +160,20 @@ def test_objects_are_never_unpickled(tmp_path):
 )
 def test_a_name_that_is_a_path_is_refused(tmp_path, name):
     assert "no name of an array" in refusal(archive_of(tmp_path / "bad.npz", {name: stored(np.zeros(1))}))
+
+
+def test_a_link_in_an_archive_is_refused(tmp_path):
+    entry = zipfile.ZipInfo("linked.npy")
+    entry.external_attr = 0o120777 << 16
+    path = archive_of(tmp_path / "bad.npz", {})
+    with zipfile.ZipFile(path, "a") as zipped:
+        zipped.writestr(entry, "/etc/passwd")
+    assert "is a link" in refusal(path)
+
+
+def test_a_pipe_in_the_place_of_an_archive_is_refused_at_once(tmp_path):
+    os.mkfifo(tmp_path / "pipe.npz")
+    assert "no regular file" in refusal(tmp_path / "pipe.npz")
 
 
 def test_another_packing_than_deflate_is_refused(tmp_path):

@@ -1,5 +1,6 @@
 """Integer networks: both run-times agree to a step, files come back whole, what does not fit is refused."""
 
+import hashlib
 import json
 from dataclasses import replace
 
@@ -8,7 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lightgesture.features.find.selector_file import load_learned
 from lightgesture.features.net.file import check_network, network_from
+from lightgesture.features.net.flatbuffer import network_arrays, to_litert, with_litert
 from lightgesture.features.net.network import (
     WEIGHTED,
     IntegerNetwork,
@@ -21,7 +24,7 @@ from lightgesture.features.net.network import (
     weight_shape,
 )
 from lightgesture.features.net.runner import MOST_PLANNED, LiteRtRunner, Network
-from lightgesture.training.nets.flatbuffer import network_arrays, with_litert
+from tests.models.test_cnn import random_model
 
 NODES = (
     Node("stem", "conv", ("x",), 8, 3, 2, "relu6"),
@@ -267,3 +270,37 @@ def test_a_trained_network_and_its_integers_nearly_agree():
         expected = module({"x": batch})["maps"].permute(0, 2, 3, 1).numpy()
     step = network.quantisation["maps"].scale
     assert np.abs(found["maps"] - expected).mean() < 3 * step
+
+
+@pytest.mark.parametrize(
+    ("place", "word"),
+    [
+        (16, 0),
+        (140, 1),
+        (232, 0x100),
+        (440, 0xFFFFFFFF),
+        (772, 0),
+        (792, 0x100),
+        (800, 0x100),
+        (824, 1 << 31),
+    ],
+)
+def test_tables_of_a_foreign_file_never_reach_litert(place, word):
+    """Each of these words made LiteRT end the process."""
+    pytest.importorskip("ai_edge_litert")
+    arrays = network_arrays("net", random_model(3, has_outline=True).network)
+    content = bytearray(arrays["net_tflite"].tobytes())
+    content[place : place + 4] = word.to_bytes(4, "little")
+    layout = json.loads(arrays["net_layout"].tobytes()) | {"sha256": hashlib.sha256(content).hexdigest()}
+    foreign = {
+        "net_layout": np.frombuffer(json.dumps(layout).encode(), np.uint8),
+        "net_tflite": np.frombuffer(bytes(content), np.uint8),
+    }
+    with pytest.raises(NetworkError, match="does not take"):
+        Network(network_from(foreign, "net"), "litert")
+
+
+@pytest.mark.parametrize("net", ["locator", "refiner"])
+def test_what_is_written_anew_of_a_bundled_net_is_its_file(net):
+    network = getattr(load_learned(None), net)
+    assert to_litert(network).content == network.litert.content

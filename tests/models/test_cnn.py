@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from lightgesture.features.net.file import check_network
+from lightgesture.features.net.flatbuffer import with_litert
 from lightgesture.features.net.network import (
     WEIGHTED,
     IntegerNetwork,
@@ -28,7 +29,6 @@ from lightgesture.models.archive import read_model
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnClassifier, CnnModel
 from lightgesture.models.cnn_file import cnn_model_from
 from lightgesture.training.model_files import write_cnn_model
-from lightgesture.training.nets.flatbuffer import with_litert
 
 SIZE = 16
 OUTLINE = ContourSettings(size=16, directions=8)

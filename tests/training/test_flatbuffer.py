@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lightgesture.features.find.selector_file import load_learned
+from lightgesture.features.net.flatbuffer import network_arrays, to_flatbuffer
 from lightgesture.features.net.network import Quantisation
-from lightgesture.training.nets.flatbuffer import network_arrays, to_flatbuffer
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,12 @@ def test_a_card_keeps_what_was_left_out(tmp_path, what):
 
 
 @pytest.mark.parametrize(
-    "content", [None, "{", "[]", "{}", '{"left_out": ["a"]}', '{"left_out": {"sources": [], "fold": "9/5"}}']
+    "content",
+    [
+        *(None, "{", "[]", "{}", "[" * 100_000, '{"left_out": ["a"]}'),
+        *('{"left_out": {"sources": [], "fold": "9/5"}}', '{"left_out": {"sources": [], "fold": []}}'),
+        '{"left_out": {"sources": "abc", "fold": null}}',
+    ],
 )
 def test_a_card_that_does_not_say_it_is_refused_by_name(tmp_path, content):
     if content is not None:

@@ -14,7 +14,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand, SummaryRecord, VehicleRecord
-from lightgesture.web import WebListener, board, listener, server
+from lightgesture.web import WebListener, board, head, listener, server
 
 AT = {"source": "dive.mp4", "frame": 3, "time_s": 0.1}
 HAND = Hand(side="right", token="5", confidence=0.98, box=(8, 8, 20, 20), track=1, reason=None)
@@ -56,7 +56,9 @@ def serve(monkeypatch):
 
     def start(host="127.0.0.1", draw=None, **limits):
         for name, value in {"beat_s": 0.2, **limits}.items():
-            place = next(module for module in (server, listener, board) if hasattr(module, name.upper()))
+            place = next(
+                module for module in (server, listener, board, head) if hasattr(module, name.upper())
+            )
             monkeypatch.setattr(place, name.upper(), value)
         page = WebListener(0, host, draw)
         page.start()
@@ -400,7 +402,7 @@ def test_there_is_a_bound_to_those_who_stay(serve):
 
 
 def test_there_is_a_bound_to_connections(serve):
-    listener = serve(connections=2, client_timeout_s=5.0)
+    listener = serve(connections=2)
     idle = [socket.create_connection(("127.0.0.1", port_of(listener))) for _ in range(2)]
     time.sleep(0.3)
     extra = socket.create_connection(("127.0.0.1", port_of(listener)), timeout=5)
@@ -412,7 +414,7 @@ def test_there_is_a_bound_to_connections(serve):
 
 
 def test_a_connection_that_says_nothing_is_left(serve):
-    listener = serve(client_timeout_s=0.3)
+    listener = serve(head_s=0.3)
     silent = socket.create_connection(("127.0.0.1", port_of(listener)), timeout=10)
     assert silent.recv(10) == b""
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from lightgesture.features.net.file import LARGEST_WEIGHT, check_network
+from lightgesture.features.net.flatbuffer import with_litert
 from lightgesture.features.net.network import IntegerNetwork, Node, Quantisation, Weights
-from lightgesture.training.nets.flatbuffer import with_litert
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 Range = tuple[float, float]

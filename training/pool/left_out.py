@@ -11,9 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from lightgesture.errors import InputError
+from lightgesture.features.files import read_whole
 from lightgesture.training.datasets import fold_of
 
 CARD_KEY = "left_out"
+LARGEST_CARD = 1 << 20
+"""Bytes of a card; ours take some ten thousand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,15 +53,18 @@ def read_left_out(model: Path) -> LeftOut:
     """What the card beside a model file (its name with the suffix .json) says was left out. Raises InputError."""
     card = model.with_suffix(".json")
     try:
-        content = json.loads(card.read_text(encoding="utf-8"))
+        content = json.loads(read_whole(card, LARGEST_CARD).decode("utf-8"))
         return _from_card(content)
     except OSError as error:
         reason = error.strerror or "not readable"
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         reason = f"no card that says what was left out: {error}"
     raise InputError(f"{card}: {reason}; train with --without or --fold to have it written")
 
 
 def _from_card(card: Mapping[str, Any]) -> LeftOut:
     content = card[CARD_KEY]
-    return left_out([str(name) for name in content["sources"]], content["fold"])
+    sources, fold = content["sources"], content["fold"]
+    if not isinstance(sources, list) or not isinstance(fold, str | None):
+        raise ValueError("sources must be a list, and fold a text such as 2/5 or null")
+    return left_out([str(name) for name in sources], fold)

@@ -12,6 +12,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Rejected
 from lightgesture.sinks import SinkError, make_sinks
 from lightgesture.sinks.mavlink import MavlinkSink
+from lightgesture.sinks.mavlink_link import EXPECTED, MOST_CLIENTS, Link
 from lightgesture.sinks.mavlink_map import COMMANDS, MavlinkMap, load_map
 from lightgesture.sinks.mavlink_texts import text_chunks
 
@@ -378,3 +379,53 @@ def test_commands_for_cameras_go_to_the_camera(tmp_path, station, instruction):
 def test_a_number_without_a_link():
     with pytest.raises(UsageError, match="--mavlink-system: is of no use without --mavlink"):
         make_sinks(DecodeSettings(mavlink_system=2))
+
+
+@pytest.fixture
+def server():
+    """An open link that listens at a port, and what sends to it as from a system."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    link = Link(f"udpin:127.0.0.1:{port}")
+    link.open()
+    yield link, ("127.0.0.1", port)
+    link.close()
+
+
+def test_messages_that_nobody_expects_are_dropped_as_they_come(server):
+    link, address = server
+    packer = common.MAVLink(None, 1, 1)
+    sent = [
+        common.MAVLink_heartbeat_message(12, 3, 128, 19, 4, 3),
+        common.MAVLink_statustext_message(6, b"x" * 50),
+        common.MAVLink_file_transfer_protocol_message(0, 1, 191, [0] * 251),
+        common.MAVLink_command_long_message(1, 191, 400, 0, 1, 0, 0, 0, 0, 0, 0),
+        common.MAVLink_set_mode_message(1, 1, 19),
+        common.MAVLink_command_ack_message(2000, 0),
+    ]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as peer:
+        for message in sent:
+            peer.sendto(message.pack(packer), address)
+        peer.sendto(bytes(range(256)) * 8, address)
+        time.sleep(0.1)
+    kinds = [message.get_type() for message in link.receive()]
+    assert kinds == ["HEARTBEAT", "COMMAND_ACK"]
+    assert set(kinds) <= EXPECTED
+
+
+def test_only_a_few_addresses_are_sent_to(server):
+    link, address = server
+    packer = common.MAVLink(None, 1, 1)
+    beat = common.MAVLink_heartbeat_message(12, 3, 128, 19, 4, 3).pack(packer)
+    peers = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3 * MOST_CLIENTS)]
+    for peer in peers:
+        peer.sendto(beat, address)
+    time.sleep(0.1)
+    link.receive()
+    wire = link.wire()
+    assert wire is not None
+    first = {("127.0.0.1", peer.getsockname()[1]) for peer in peers[:MOST_CLIENTS]}
+    assert set(wire.addresses) == first
+    for peer in peers:
+        peer.close()

@@ -1,5 +1,6 @@
 """A vehicle by MAVLink: what it is asked, how often, and what its answers become."""
 
+import math
 import time
 
 import pytest
@@ -172,6 +173,13 @@ def test_a_parameter_that_does_not_keep_what_is_set(boat, autopilot, monkeypatch
     monkeypatch.setattr(autopilot, "_on_param_set", lambda message: autopilot._tell_param(message.param_id))
     reply = boat.order(WriteParameter(name="PILOT_SPEED_UP", value=60))
     assert (reply.state, reply.detail) == ("refused", "is 50 after it was set to 60")
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_parameter_that_is_no_number_is_refused(boat, autopilot, value):
+    autopilot.params["PILOT_SPEED_UP"] = value
+    reply = boat.order(ReadParameter(name="PILOT_SPEED_UP"))
+    assert (reply.state, reply.detail) == ("refused", "the vehicle says that it is no number")
 
 
 def test_a_mission_is_counted_and_begun_at_its_item(boat, autopilot):

@@ -54,9 +54,14 @@ _OPERATORS = {
 
 def with_litert(network: IntegerNetwork) -> IntegerNetwork:
     """The network with its `.tflite` file, so that LiteRT can run it."""
+    return replace(network, litert=to_litert(network))
+
+
+def to_litert(network: IntegerNetwork) -> LiteRtFile:
+    """The `.tflite` file of a network. Needs the package flatbuffers."""
     content, places = to_flatbuffer(network)
     sizes = {node.name: places[f"{node.name}/{SIZE}"] for node in network.nodes if node.op == "upsample"}
-    return replace(network, litert=LiteRtFile(content, sizes))
+    return LiteRtFile(content, sizes)
 
 
 def network_arrays(prefix: str, network: IntegerNetwork) -> dict[str, NDArray[Any]]:

@@ -92,9 +92,9 @@ class WatchedRegions:
         self.searches += 1
         return self._stage.process(colour)
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
         """Look at predicted boxes."""
-        return self._stage.follow(colour, boxes)
+        return self._stage.follow(image, boxes)
 
 
 def open_stage(engine: Engine) -> Finder:

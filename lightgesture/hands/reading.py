@@ -156,37 +156,47 @@ class ReadingStage:
         memory.keep_only([hand.number for hand in hands])
         if not hands:
             return ()
-        boxes = [box for hand in hands for box in (hand.box, *hand.alternatives)]
-        sides = [hand.side or "right" for hand in hands for _ in range(1 + len(hand.alternatives))]
-        rows = self._classifier.probabilities(image, boxes, sides)
+        looks = memory.looks
+        standing = [
+            None if looks is None else looks.standing(image, hand.number, hand.box, time_s) for hand in hands
+        ]
+        asked = [hand for hand, look in zip(hands, standing, strict=True) if look is None]
+        fresh = iter(self._read_anew(image, asked))
         read = []
-        first = 0
-        for hand in hands:
-            last = first + 1 + len(hand.alternatives)
+        for hand, look in zip(hands, standing, strict=True):
+            row, extent = next(fresh) if look is None else (look.row, look.extent)
+            if look is None and looks is not None:
+                looks.keep(image, hand.number, hand.box, row, extent, time_s)
             others = [other.box for other in hands if other is not hand]
             crowded = is_crowded(hand.box, others, face, self._settings)
-            read.append(self._read(image, hand, boxes[first:last], rows[first:last], crowded, memory, time_s))
-            first = last
+            steady = memory.steady(hand.number, row, time_s)
+            read.append(self._named(image, hand, extent, steady, crowded))
         return tuple(read)
 
-    def _read(
-        self,
-        image: Image,
-        hand: HandInView,
-        boxes: Sequence[Box],
-        rows: NDArray[np.float32],
-        crowded: bool,
-        memory: ReadingMemory,
-        time_s: float,
+    def _read_anew(self, image: Image, hands: Sequence[HandInView]) -> list[tuple[NDArray[np.float32], int]]:
+        """Probabilities (classes,) of each hand, and the number of the extent in which it reads most clearly."""
+        if not hands:
+            return []
+        boxes = [box for hand in hands for box in (hand.box, *hand.alternatives)]
+        sides = [hand.side or "right" for hand in hands for _ in range(1 + len(hand.alternatives))]
+        rows, classes = self._classifier.probabilities(image, boxes, sides), self._classifier.classes
+        read, first = [], 0
+        for hand in hands:
+            own = rows[first : first + 1 + len(hand.alternatives)]
+            extent = clearest(own, classes) if len(own) > 1 else 0
+            row = own[extent] if self._settings.extents == "clearest" else own.mean(axis=0)
+            read.append((row, extent))
+            first += len(own)
+        return read
+
+    def _named(
+        self, image: Image, hand: HandInView, extent: int, row: NDArray[np.float32], crowded: bool
     ) -> Hand:
-        """The hand with the box in which it reads most clearly."""
+        """The hand with its token, in the box of an extent."""
         classes = self._classifier.classes
-        place = clearest(rows, classes)
-        row = rows[place] if self._settings.extents == "clearest" else rows.mean(axis=0)
-        steady = memory.steady(hand.number, row, time_s)
-        box = boxes[place]
+        box = hand.alternatives[extent - 1] if 0 < extent <= len(hand.alternatives) else hand.box
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)
+        token, confidence, reason = read_token(row, classes, at_edge, crowded, self._settings)
         return Hand(
             side=hand.side or "right",
             token=token,
@@ -194,5 +204,5 @@ class ReadingStage:
             box=box,
             track=hand.number,
             reason=reason,
-            probabilities=dict(zip(classes, steady.tolist(), strict=True)),
+            probabilities=dict(zip(classes, row.tolist(), strict=True)),
         )

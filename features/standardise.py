@@ -56,8 +56,11 @@ def as_levels(
     # One pass that rounds as NumPy does and saturates, where NumPy takes four.
     levels = np.asarray(cv2.addWeighted(roots, factor, roots, 0.0, offset, dtype=cv2.CV_8S), np.int8)
     reach = round(LARGEST / quantisation.scale)
-    if quantisation.zero - reach > -128 or quantisation.zero + reach < 127:
-        np.clip(levels, quantisation.zero - reach, quantisation.zero + reach, out=levels)
+    lowest, highest = quantisation.zero - reach, quantisation.zero + reach
+    if lowest > -128:
+        np.maximum(levels, np.int8(lowest), out=levels)
+    if highest < 127:
+        np.minimum(levels, np.int8(highest), out=levels)
     return levels
 
 

@@ -37,15 +37,24 @@ CELLS: Final = 8
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
     """row: probabilities (classes,) as read at `time_s` seconds. extent: number of the extent that read most clearly.
-    cells: uint8 (CELLS, CELLS, 3), what the place `square` showed; most: by how much a cell of it may change."""
+    others: (extents - 1, classes), those of the hand's other extents, as read at `others_s`. cells: uint8 (CELLS,
+    CELLS, 3), what the place `square` showed; most: by how much a cell of it may change."""
 
     row: NDArray[np.float32]
     extent: int
+    others: NDArray[np.float32]
+    others_s: float
     box: Box
     square: Square
     cells: Image
     most: float
     time_s: float
+
+
+def says_the_same(row: NDArray[np.float32], look: Look) -> bool:
+    """Whether a hand's box is read surely, as what all its extents said: then reading the others would tell nothing."""
+    likeliest = int(row.argmax())
+    return bool(row[likeliest] >= SURE and likeliest == look.row.argmax())
 
 
 class LastLooks:
@@ -67,19 +76,31 @@ class LastLooks:
         change = cv2.norm(_cells(image, look.square), look.cells, cv2.NORM_INF)
         return look if change <= look.most else None
 
+    def recent(self, track: int | None, box: Box, time_s: float) -> Look | None:
+        """The last reading of a hand that is about in this box, where its other extents were read a moment ago."""
+        look = None if track is None else self._looks.get(track)
+        if look is None or not 0.0 <= time_s - look.others_s < STANDS_S or box_iou(box, look.box) < SAME_IOU:
+            return None
+        return look
+
     def keep(
-        self, image: Image, track: int | None, box: Box, row: NDArray[np.float32], extent: int, time_s: float
+        self,
+        image: Image,
+        track: int | None,
+        box: Box,
+        read: tuple[NDArray[np.float32], int, NDArray[np.float32], float],
+        time_s: float,
     ) -> None:
-        """Keep what was just read of a hand, where it may stand; see `Look`."""
+        """Keep what was just read of a hand, where it may stand; read: the first four fields of `Look`."""
         if track is None:
             return
-        if row.max() < SURE:
+        if read[0].max() < SURE:
             self._looks.pop(track, None)
             return
         (square,) = squares_round([box], CONTEXT)
         cells = _cells(image, square)
         most = CHANGED * float(cv2.meanStdDev(cells)[1].max())
-        self._looks[track] = Look(row, extent, box, square, cells, most, time_s)
+        self._looks[track] = Look(*read, box, square, cells, most, time_s)
 
 
 def _cells(image: Image, square: Square) -> Image:

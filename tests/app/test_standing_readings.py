@@ -1,13 +1,14 @@
 """Reading less often: a hand that is held still is spared, one that changed or is in doubt is read at once."""
 
+from collections import namedtuple
+
 import cv2
 import numpy as np
 import pytest
 
-from lightgesture.features.types import HandRegion
 from lightgesture.hands.looks import CHANGED, STANDS_S, LastLooks
 from lightgesture.hands.memory import ReadingMemory, memory_for_sentences, middle
-from lightgesture.hands.reading import ReadingStage
+from lightgesture.hands.reading import ReadingSettings, ReadingStage
 
 BOX = (200, 150, 90, 110)
 SURE = np.array([0.97, 0.02, 0.01], np.float32)
@@ -30,10 +31,13 @@ def scene(fingers=5, shift=0.0, noise=0, seed=0):
     return np.clip(picture + grain, 0, 255).round().astype(np.uint8)
 
 
-def kept(row=SURE, **options):
-    looks = LastLooks()
-    looks.keep(scene(**options), 1, BOX, row, 0, 10.0)
+def keep(looks, picture, row=SURE, time_s=10.0):
+    looks.keep(picture, 1, BOX, (row, 0, row[None], time_s), time_s)
     return looks
+
+
+def kept(row=SURE, **options):
+    return keep(LastLooks(), scene(**options), row)
 
 
 @pytest.mark.parametrize("noise", [0, 2, 6])
@@ -65,7 +69,7 @@ def test_a_reading_stands_for_a_moment_only(time_s):
 def test_what_was_in_doubt_or_of_another_hand_does_not_stand():
     assert kept(DOUBT).standing(scene(), 1, BOX, 10.033) is None
     looks = kept()
-    looks.keep(scene(), 1, BOX, DOUBT, 0, 10.033)
+    keep(looks, scene(), DOUBT, 10.033)
     assert looks.standing(scene(), 1, BOX, 10.05) is None
     assert kept().standing(scene(), 2, BOX, 10.033) is None
     assert kept().standing(scene(), None, BOX, 10.033) is None
@@ -76,11 +80,13 @@ def test_what_was_in_doubt_or_of_another_hand_does_not_stand():
 
 def test_the_bound_goes_by_the_contrast_of_the_place():
     dim = (scene() // 8 + 60).astype(np.uint8)
-    looks = LastLooks()
-    looks.keep(dim, 1, BOX, SURE, 0, 10.0)
+    looks = keep(LastLooks(), dim)
     changed = (scene(4) // 8 + 60).astype(np.uint8)
     assert looks.standing(changed, 1, BOX, 10.033) is None
     assert 0.0 < CHANGED < 1.0
+
+
+Tracked = namedtuple("Tracked", "number side box alternatives certainty")
 
 
 class Counting:
@@ -97,14 +103,9 @@ class Counting:
         return np.array([self.row] * len(boxes), np.float32)
 
 
-def read(stage, memory, picture, frame, track=1):
-    hand = HandRegion(BOX, np.zeros((0, 2), np.int32), "left", 0.9)
-    tracked = type(
-        "Tracked",
-        (),
-        {"number": track, "side": "left", "box": hand.box, "alternatives": (), "certainty": 1.0},
-    )
-    (found,) = stage.process(picture, [tracked()], None, memory, frame / 30)
+def read(stage, memory, picture, frame, alternatives=()):
+    hand = Tracked(1, "left", BOX, alternatives, 1.0)
+    (found,) = stage.process(picture, [hand], None, memory, frame / 30)
     return found
 
 
@@ -135,6 +136,26 @@ def test_without_memory_and_at_ten_frames_a_second_every_frame_is_read():
         for frame in range(0, 6 * rate, rate):
             read(ReadingStage(classifier), memory, scene(), frame)
         assert classifier.asked == 6
+
+
+def test_other_extents_are_read_where_they_can_change_the_answer():
+    classifier, memory = Counting(), memory_for_sentences(0.4)
+    stage = ReadingStage(classifier, ReadingSettings(extents="mean"))
+
+    def asked(frame, fingers, row):
+        before, classifier.row = classifier.asked, row
+        hand = read(stage, memory, scene(fingers), frame, (BOX,))
+        return classifier.asked - before, hand
+
+    assert asked(0, 5, SURE)[0] == 2
+    # The picture changed a little and the box says surely what all said: the other extent is not asked.
+    assert asked(1, 4, SURE)[0] == 1
+    # It may be spared no longer than a reading stands.
+    assert asked(4, 5, SURE)[0] == 2
+    # Where the box is in doubt, or says another sign, it is.
+    assert asked(5, 4, DOUBT)[0] == 2
+    assert asked(6, 5, SURE)[0] == 2
+    assert asked(7, 4, SURE[[1, 0, 2]])[0] == 2
 
 
 @pytest.mark.parametrize("count", range(1, 9))

@@ -183,11 +183,11 @@ def fresh_start(engine: Engine) -> tuple[float, float | None]:
     return ready - start, peak
 
 
-def fresh_starts() -> Table:
-    """Median of some starts of each engine."""
+def fresh_starts(count: int = STARTS) -> Table:
+    """Median of so many starts of each engine."""
     rows: list[dict[str, Cell]] = []
     for engine in engines():
-        starts = [fresh_start(engine) for _ in range(STARTS)]
+        starts = [fresh_start(engine) for _ in range(count)]
         peaks = [peak for _, peak in starts if peak is not None]
         rows.append(
             {

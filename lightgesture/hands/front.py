@@ -143,6 +143,11 @@ class HandReader(FrontEnd):
         # What is hidden in its place is shown all the same, and not read.
         return Signs(HIDDEN, HIDDEN) if self._hidden.process(self._tracks) else self._signs()
 
+    @property
+    def is_searched(self) -> bool:
+        """Whether the whole of the last frame was searched; else its hands were only followed."""
+        return self._found is not None and self._found[1]
+
     def recognize(self, image: Image) -> Signs:
         """The signs of both hands in a picture on its own."""
         upright = self._turn_upright(image)

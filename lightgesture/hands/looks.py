@@ -22,9 +22,9 @@ STANDS_S: Final = 0.09
 10."""
 SURE: Final = 0.9
 """Probability of the likeliest class from which a reading may stand, 0 to 1; in doubt every frame is read."""
-CHANGED: Final = 0.35
+CHANGED: Final = 0.45
 """By how much a cell may change, over the deviation of the cells. Of neighbouring frames of signing hands, rendered and
-real, two thirds change less, and 2 in 1,000 of these read otherwise."""
+real, seven in ten change less, and 6 in 1,000 of these read otherwise."""
 SAME_IOU: Final = 0.7
 """Overlap of the box with the one in which the hand was read, below which it is another place."""
 CONTEXT: Final = 1.2

@@ -61,7 +61,7 @@ def fake_pipelines(monkeypatch):
 
 @pytest.fixture
 def no_starts(monkeypatch):
-    monkeypatch.setattr(latency, "fresh_starts", lambda: Table("starts", "Starts", ("seconds",), ()))
+    monkeypatch.setattr(latency, "fresh_starts", lambda count=1: Table("starts", "Starts", ("seconds",), ()))
 
 
 @pytest.fixture

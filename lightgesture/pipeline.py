@@ -35,9 +35,8 @@ class OneBlasThread:
     """Makes blocks in which matrix products run in one thread; after a block the old number holds again.
 
     The classifier's products are tiny: a second thread gains nothing, and where other work keeps the cores busy, the
-    waiting for it makes a frame ten times as slow. A block costs about 20
-    microseconds, or two where one thread is all there is. Only libraries that are
-    loaded when the object is made are limited, so NumPy must be.
+    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds, or two where there is one
+    thread anyway. Only libraries that are loaded when the object is made are limited, so NumPy must be.
     """
 
     def __init__(self) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Levels, Network, logistic
-from lightgesture.features.standardise import level_tables
+from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Float, Image
 
 MULTIPLE: Final = 16
@@ -58,7 +58,7 @@ class Locator:
 
     def table(self, picture: Image) -> Levels:
         """int8 (1, 256, 3): the integer that stands for each value of each channel of a picture."""
-        return level_tables(picture, self._network.quantisation(INPUT))
+        return self._network.table(INPUT, channel_tables(picture))
 
     def process(self, picture: Image, tables: Levels) -> Float:
         """Maps of a working picture, float32 (6, h, w) on cells of 4 pixels; see `HAND`.

@@ -13,10 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import WORKING_PIXELS, ColourMap
-from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.features.net.network import IntegerNetwork, Quantisation
 from lightgesture.features.net.runner import Levels, Network
 from lightgesture.features.patch import Square, cut_squares, shrink_square, squares_round
-from lightgesture.features.standardise import as_levels, level_tables, scales_of, square_roots
+from lightgesture.features.standardise import (
+    as_levels,
+    channel_tables,
+    level_tables,
+    luma_tables,
+    scales_of,
+    square_roots,
+)
 from lightgesture.features.types import Float, Image
 
 INPUT, HAND, BOX = "windows", "hand", "box"
@@ -58,7 +65,7 @@ class Refiner:
 
     def table(self, picture: Image) -> Levels:
         """int8 (1, 256, 3): the integer that stands for each value of each channel of a picture."""
-        return level_tables(picture, self._network.quantisation(INPUT))
+        return self._network.table(INPUT, channel_tables(picture))
 
     def process(self, colour: ColourMap, boxes: Float, tables: Levels) -> Refined:
         """Look at the places of `boxes`, float32 (n, 4), working pixels.
@@ -69,7 +76,13 @@ class Refiner:
             return Refined(np.zeros((0, 4), np.float32), np.zeros(0, np.float32))
         scale = colour.detail.shape[1] / colour.picture.shape[1]
         windows = windows_round(boxes * np.float32(scale), colour.detail)
-        found, hand = self._run(cut_windows(colour.detail, windows), windows, tables)
+        cuts = cut_windows(colour.detail, windows)
+        lumas, luma_values = luma_tables(cuts)
+        levels = [
+            cv2.LUT(luma, table)
+            for luma, table in zip(lumas, self._network.table(INPUT, luma_values), strict=True)
+        ]
+        found, hand = self._run(_with_luma(cuts, tables, np.concatenate(levels)), windows)
         return Refined(np.array(found, np.float32) / np.float32(scale), np.array(hand, np.float32))
 
     def look(self, image: Image, boxes: Sequence[Sequence[float]]) -> tuple[list[Rectangle], list[float]]:
@@ -87,13 +100,13 @@ class Refiner:
         cuts = np.empty((len(windows), SIZE, SIZE, 3), np.uint8)
         for cut, square in zip(cuts, cut_squares(image, windows), strict=True):
             shrink_square(square, cut)
-        return self._run(cuts, windows, self.table(sample))
+        quantisation = self._network.quantisation(INPUT)
+        tables = level_tables(sample, quantisation)
+        return self._run(_with_luma(cuts, tables, _luma_levels(cuts, quantisation)), windows)
 
-    def _run(
-        self, cuts: NDArray[np.uint8], windows: Sequence[Square], tables: Levels
-    ) -> tuple[list[Rectangle], list[float]]:
-        """Refined boxes in the pixels of the windows, and logits, of pictures (n, SIZE, SIZE, 3) of n windows."""
-        outputs = self._network.run({INPUT: self._levels(cuts, tables)})
+    def _run(self, seen: Levels, windows: Sequence[Square]) -> tuple[list[Rectangle], list[float]]:
+        """Refined boxes in the pixels of the windows, and logits, of what n windows show, int8 (n, SIZE, SIZE, 4)."""
+        outputs = self._network.run({INPUT: seen})
         found = []
         for (left, top, side), (x0, y0, x1, y1) in zip(
             windows, outputs[BOX].reshape(len(windows), 4).tolist(), strict=True
@@ -102,20 +115,24 @@ class Refiner:
             found.append((x, y, max((x1 - x0) * side, LEAST_SIDE), max((y1 - y0) * side, LEAST_SIDE)))
         return found, outputs[HAND].ravel().tolist()
 
-    def _levels(self, cuts: NDArray[np.uint8], tables: Levels) -> Levels:
-        """int8 (n, SIZE, SIZE, 4): blue, green and red by the tables of the frame, luma standardised in each window."""
-        quantisation = self._network.quantisation(INPUT)
-        flat = cuts.reshape(-1, SIZE, 3)
-        luma = np.asarray(cv2.cvtColor(flat, cv2.COLOR_BGR2GRAY), np.uint8)
-        roots = square_roots(luma)
-        levels = np.empty(luma.shape, np.int8)
-        for first in range(0, len(luma), SIZE):
-            own = slice(first, first + SIZE)
-            ((factor, offset),) = scales_of(luma[own], roots[own], quantisation)
-            levels[own] = as_levels(roots[own], quantisation, factor, offset)
-        # Several times as fast as laying channels side by side with NumPy.
-        seen = cv2.merge([cv2.LUT(flat, tables), levels])
-        return np.asarray(seen, np.int8).reshape(*cuts.shape[:3], 4)
+
+def _luma_levels(cuts: NDArray[np.uint8], quantisation: Quantisation) -> Levels:
+    """int8 (n * SIZE, SIZE): the luma of each of n windows, standardised by itself; see `luma_tables`."""
+    luma = np.asarray(cv2.cvtColor(cuts.reshape(-1, SIZE, 3), cv2.COLOR_BGR2GRAY), np.uint8)
+    roots = square_roots(luma)
+    levels = np.empty(luma.shape, np.int8)
+    for first in range(0, len(luma), SIZE):
+        own = slice(first, first + SIZE)
+        ((factor, offset),) = scales_of(luma[own], roots[own], quantisation)
+        levels[own] = as_levels(roots[own], quantisation, factor, offset)
+    return levels
+
+
+def _with_luma(cuts: NDArray[np.uint8], tables: Levels, luma: Levels) -> Levels:
+    """int8 (n, SIZE, SIZE, 4): blue, green and red of windows by the tables of their frame, and luma as it is."""
+    # Several times as fast as laying channels side by side with NumPy.
+    seen = cv2.merge([cv2.LUT(cuts.reshape(-1, SIZE, 3), tables), luma])
+    return np.asarray(seen, np.int8).reshape(*cuts.shape[:3], 4)
 
 
 def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:

@@ -1,7 +1,8 @@
 """Time of the pipeline on one machine: `python -m lightgesture.benchmarks.latency`.
 
-Frames are read and scaled to 640 x 480 before the clock starts. Every clip is run with each number of
-threads by a pipeline of its own, after a warm-up; the numbers that were set before are restored.
+Frames are read and scaled before the clock starts. First all ways stand side by side: each takes a few frames in turn,
+so that other work on the machine slows all alike. Then every clip is run at 640 x 480 with each number of threads by a
+pipeline of its own, after a warm-up; the numbers that were set before are restored.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from lightgesture.benchmarks.finding.latency import STARTS, finding_times, fresh
 from lightgesture.benchmarks.paper.bank import build_bank
 from lightgesture.benchmarks.paper.chain import PaperChain
 from lightgesture.benchmarks.scorer import percentile
+from lightgesture.benchmarks.side_by_side import FRAMES, SIZES, draw, side_by_side, two_videos
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.benchmarks.timing import (
     ROUNDS,
@@ -41,6 +43,9 @@ from lightgesture.models import ModelError
 from lightgesture.results.atomic import replacing
 from lightgesture.sources import open_source, read_picture
 from lightgesture.training.datasets import find_data, group_samples, read_frames
+
+QUICK_FRAMES: Final = 30
+"""Frames of a quick run."""
 
 MOST_FRAMES: Final = 150
 """Frames of a clip that are used."""
@@ -130,19 +135,34 @@ def write_json(path: Path, content: object) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Measure, print the table, write the file; 0 when all was done."""
-    data = _find_data(args.data)
+    data = None if args.quick else _find_data(args.data)
     clips = read_clips(data)
-    try:
-        rows = measure(clips, args.model, _paper_maker(data), args.rounds)
-    except ModelError as error:
-        raise UsageError(str(error)) from error
-    tables = [latency_table(rows), finding_times(clips, args.rounds), fresh_starts()]
+    shown = next(iter(clips.values()))[-FRAMES:]
+    if args.quick:
+        tables = [*side_by_side(shown[:QUICK_FRAMES], SIZES[:1], 1), fresh_starts(1)]
+    else:
+        tables = [*side_by_side(shown), *_by_threads(clips, data, args), fresh_starts()]
+    if SAMPLE.is_file() and (videos := two_videos(SAMPLE, rounds=1 if args.quick else 3)):
+        tables.append(videos)
     print_line(to_text(tables))
+    if args.picture:
+        draw(tables[0].to_dicts(), Path(args.picture))
     if args.out:
         found = [row for table in tables for row in table.to_dicts()]
         content = {"machine": describe_machine(), "settings": _told(args.rounds), "rows": found}
         write_json(Path(args.out), content)
     return ExitStatus.OK
+
+
+def _by_threads(
+    clips: Mapping[str, Sequence[Image]], data: Path | None, args: argparse.Namespace
+) -> list[Table]:
+    """Every clip with each number of threads, and finding alone."""
+    try:
+        rows = measure(clips, args.model, _paper_maker(data), args.rounds)
+    except ModelError as error:
+        raise UsageError(str(error)) from error
+    return [latency_table(rows), finding_times(clips, args.rounds)]
 
 
 def _told(rounds: int) -> dict[str, object]:
@@ -184,7 +204,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--data", metavar="DIR", help="folder of labelled pictures (default: ../shared/data)")
     parser.add_argument("--model", default="cnn", metavar="cnn|svm|PATH", help="classifier (default: cnn)")
-    parser.add_argument("--out", metavar="FILE.json", help="write the figures and the machine here")
+    parser.add_argument(
+        "--json", "--out", dest="out", metavar="FILE.json", help="write the figures and the machine here"
+    )
+    parser.add_argument("--picture", metavar="FILE.png", help="draw the times side by side (extra plots)")
+    parser.add_argument(
+        "--quick", action="store_true", help="one size, few frames and no threads; under a minute"
+    )
     parser.add_argument("--rounds", type=positive, default=ROUNDS, metavar="N", help="passes over a clip")
     args = parser.parse_args(argv)
     return exit_status(lambda: run(args), "nothing was written")

@@ -53,6 +53,14 @@ def scale_boxes(boxes: NDArray[Any], scale: tuple[float, float], size: tuple[int
     return list(zip(*low.T.astype(int).tolist(), *sides.T.astype(int).tolist(), strict=True))
 
 
+def whole_box(place: tuple[float, float, float, float], size: tuple[int, int]) -> Box:
+    """x, y, width, height in whole pixels, kept inside a picture of `size` (width, height): `scale_boxes` of one."""
+    x, y, width, height = place
+    left, top = min(max(round(x), 0), size[0] - 1), min(max(round(y), 0), size[1] - 1)
+    right, bottom = min(round(x + width), size[0]), min(round(y + height), size[1])
+    return left, top, max(right - left, 1), max(bottom - top, 1)
+
+
 def mirror_box(box: Box, width: int) -> Box:
     """The box in the picture flipped left to right; `width` of the picture in pixels."""
     return width - box[0] - box[2], box[1], box[2], box[3]

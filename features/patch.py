@@ -1,5 +1,6 @@
 """The square patch round a hand that classifiers read: cut, mirrored and resized, the same in training and use."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -52,18 +53,26 @@ def cut_patches(
     picture = as_bgr8(image)
     _check(boxes, sides, (picture.shape[1], picture.shape[0]))
     size = settings.size
-    squares = squares_round(np.array(boxes).reshape(-1, 4), settings.context)
+    squares = squares_round(boxes, settings.context)
     patches = np.empty((len(boxes), size, size, 3), np.uint8)
     for patch, square, side in zip(patches, cut_squares(picture, squares), sides, strict=True):
-        # Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large hand
-        # is sampled at twice the size first: averaging all its pixels takes three to four times as long, for nothing.
-        if len(square) > 2 * size:
-            square = cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
-        method = cv2.INTER_AREA if len(square) >= size else cv2.INTER_LINEAR
-        cv2.resize(square, (size, size), patch, interpolation=method)
+        shrink_square(square, patch)
         if side == "right":
             cv2.flip(patch, 1, patch)
     return patches
+
+
+def shrink_square(square: Image, patch: Image) -> None:
+    """A square, uint8 (side, side, 3), brought to the size of a patch, uint8 (size, size, 3), which is written to.
+
+    Averaging areas keeps thin fingers when shrinking; it would make blocks of pixels when growing. A large square is
+    sampled at twice the size first: averaging all its pixels takes three to four times as long, for nothing.
+    """
+    size = len(patch)
+    if len(square) > 2 * size:
+        square = cv2.resize(square, (2 * size, 2 * size), interpolation=cv2.INTER_LINEAR)  # type: ignore[assignment]
+    method = cv2.INTER_AREA if len(square) >= size else cv2.INTER_LINEAR
+    cv2.resize(square, (size, size), patch, interpolation=method)
 
 
 def _check(boxes: Sequence[Box], sides: Sequence[str], picture: tuple[int, int]) -> None:
@@ -82,14 +91,19 @@ def _check(boxes: Sequence[Box], sides: Sequence[str], picture: tuple[int, int])
 
 
 def squares_round(
-    boxes: NDArray[Any], context: float, least: float = 1.0, most: float = np.inf
+    boxes: NDArray[Any] | Sequence[Sequence[float]],
+    context: float,
+    least: float = 1.0,
+    most: float = math.inf,
 ) -> list[Square]:
     """Squares about the middles of boxes, (n, 4), x, y, width, height: `context` times the longer side, but at least
     `least` and at most `most` pixels wide, rounded to whole ones, never below 1."""
-    x, y, width, height = boxes.astype(np.float64).T
-    side = np.maximum(np.rint((context * np.maximum(width, height)).clip(least, most)), 1.0)
-    places = np.rint([x + (width - side) / 2, y + (height - side) / 2, side])
-    return list(zip(*places.astype(np.int64).tolist(), strict=True))
+    squares = []
+    # A handful of boxes: the calls on arrays would take longer than the numbers.
+    for x, y, width, height in boxes.tolist() if isinstance(boxes, np.ndarray) else boxes:
+        side = max(round(min(max(context * max(width, height), least), most)), 1)
+        squares.append((round(x + (width - side) / 2), round(y + (height - side) / 2), side))
+    return squares
 
 
 def cut_squares(picture: Image, squares: Sequence[Square]) -> list[Image]:
@@ -103,7 +117,7 @@ def cut_squares(picture: Image, squares: Sequence[Square]) -> list[Image]:
         margins = y0 - top, top + side - y1, x0 - left, left + side - x1
         if any(margins):
             # Of a square wholly beside the picture a margin is negative.
-            above, below, before, after = np.maximum(margins, 0).tolist()
+            above, below, before, after = (max(margin, 0) for margin in margins)
             cut = cv2.copyMakeBorder(cut, above, below, before, after, cv2.BORDER_REPLICATE)  # type: ignore[assignment]
         cuts.append(cut)
     return cuts

@@ -24,6 +24,54 @@ _ROOTS = np.sqrt(_SQUARES)
 _SINGLE_ROOTS = _ROOTS.astype(np.float32)
 
 
+def square_roots(picture: NDArray[np.uint8]) -> Float:
+    """Of values over 255: uint8 (h, w) or (h, w, channels) -> float32, the same shape."""
+    return np.asarray(cv2.LUT(picture, _SINGLE_ROOTS), np.float32)
+
+
+def scales_of(
+    picture: NDArray[np.uint8], roots: Float, quantisation: Quantisation
+) -> list[tuple[float, float]]:
+    """Factor and offset, a channel each, from a square root to the integer that stands for its standardised value.
+
+    picture: uint8 (h, w) or (h, w, channels), up to 4; roots: its `square_roots`.
+    """
+    scales = []
+    channels = 1 if roots.ndim == 2 else roots.shape[2]
+    for mean, square in zip(cv2.mean(roots)[:channels], cv2.mean(picture)[:channels], strict=True):
+        # The value over 255 is the square of its root, so both means give the deviation.
+        deviation = max(square / 255.0 - mean * mean, 0.0) ** 0.5 + EVENNESS
+        factor = 1.0 / (quantisation.scale * deviation)
+        scales.append((factor, quantisation.zero - mean * factor))
+    return scales
+
+
+def as_levels(
+    roots: Float, quantisation: Quantisation, factor: float = 1.0, offset: float = 0.0
+) -> NDArray[np.int8]:
+    """Integers nearest to factor × roots + offset, clipped to LARGEST deviations: float32 -> int8, the same shape.
+
+    roots: (h, w) or (h, w, channels), up to 4.
+    """
+    # One pass that rounds as NumPy does and saturates, where NumPy takes four.
+    levels = np.asarray(cv2.addWeighted(roots, factor, roots, 0.0, offset, dtype=cv2.CV_8S), np.int8)
+    reach = round(LARGEST / quantisation.scale)
+    lowest, highest = quantisation.zero - reach, quantisation.zero + reach
+    if lowest > -128:
+        np.maximum(levels, np.int8(lowest), out=levels)
+    if highest < 127:
+        np.minimum(levels, np.int8(highest), out=levels)
+    return levels
+
+
+def level_tables(picture: Image, quantisation: Quantisation) -> NDArray[np.int8]:
+    """int8 (1, 256, 3): the integer for each value of blue, green and red of a picture; those of `channel_tables`, but
+    for one where rounding is near a tie."""
+    scales = scales_of(picture, square_roots(picture), quantisation)
+    channels = [as_levels(_SINGLE_ROOTS, quantisation, factor, offset) for factor, offset in scales]
+    return np.asarray(cv2.merge(channels), np.int8).reshape(1, 256, 3)
+
+
 def channel_tables(picture: Image) -> Float:
     """float32 (1, 256, 3): the standardised value of each value of blue, green and red of this picture."""
     counts = np.empty((3, 256), np.float32)
@@ -61,21 +109,10 @@ def patch_levels(patches: NDArray[np.uint8], quantisation: Quantisation) -> NDAr
     1,024 pixels do. Against `channel_tables` and `quantise` an integer is one off where rounding is near a tie.
     """
     count, height, width = patches.shape[:3]
-    values = cv2.LUT(patches.reshape(count * height, width, 3), _SINGLE_ROOTS).reshape(patches.shape)
-    to_levels = np.zeros((3, 4), np.float32)
+    values = square_roots(patches.reshape(count * height, width, 3)).reshape(patches.shape)
+    scales = np.zeros((3, 4), np.float32)
     for patch, roots in zip(patches, values, strict=True):
-        means, squares = cv2.mean(roots), cv2.mean(patch)
-        for channel in range(3):
-            mean = means[channel]
-            # The value over 255 is the square of its root, so both means give the deviation.
-            deviation = max(squares[channel] / 255.0 - mean * mean, 0.0) ** 0.5 + EVENNESS
-            factor = 1.0 / (quantisation.scale * deviation)
-            to_levels[channel, channel] = factor
-            to_levels[channel, 3] = quantisation.zero - mean * factor
-        cv2.transform(roots, to_levels, roots)
-    reach = round(LARGEST / quantisation.scale)
-    if quantisation.zero - reach > -128 or quantisation.zero + reach < 127:
-        np.clip(values, quantisation.zero - reach, quantisation.zero + reach, out=values)
-    # One pass that rounds as NumPy does and saturates, where NumPy takes four.
-    rounded = cv2.add(values.reshape(count * height, -1), 0.0, dtype=cv2.CV_8S)  # type: ignore[call-overload]
-    return np.asarray(rounded, np.int8).reshape(patches.shape)
+        for channel, (factor, offset) in enumerate(scales_of(patch, roots, quantisation)):
+            scales[channel, channel], scales[channel, 3] = factor, offset
+        cv2.transform(roots, scales, roots)
+    return as_levels(values.reshape(count * height, width, 3), quantisation).reshape(patches.shape)

@@ -22,6 +22,7 @@ class StageClock:
     def __init__(self) -> None:
         self._stages: dict[str, deque[float]] = defaultdict(lambda: deque(maxlen=KEPT_TIMES))
         self._frames: deque[float] = deque(maxlen=KEPT_TIMES)
+        self._frame: dict[str, float] = {}
         self._started = self._lapped = 0.0
 
     def start(self) -> None:
@@ -29,13 +30,16 @@ class StageClock:
         self._started = self._lapped = time.perf_counter()
 
     def lap(self, stage: str) -> None:
-        """The stage that ran until now ends."""
+        """The stage that ran until now ends; one that runs again in the same frame adds to its time."""
         now = time.perf_counter()
-        self._stages[stage].append((now - self._lapped) * 1e3)
+        self._frame[stage] = self._frame.get(stage, 0.0) + (now - self._lapped) * 1e3
         self._lapped = now
 
     def end_frame(self) -> None:
         """The frame ends with its last stage."""
+        for stage, spent_ms in self._frame.items():
+            self._stages[stage].append(spent_ms)
+        self._frame.clear()
         self._frames.append((self._lapped - self._started) * 1e3)
 
     @property

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, nullcontext
 from copy import copy
 from dataclasses import replace
 from datetime import datetime
@@ -35,8 +35,8 @@ class OneBlasThread:
     """Makes blocks in which matrix products run in one thread; after a block the old number holds again.
 
     The classifier's products are tiny: a second thread gains nothing, and where other work keeps the cores busy, the
-    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds. Only libraries that are
-    loaded when the object is made are limited, so NumPy must be.
+    waiting for it makes a frame ten times as slow. A block costs about 20 microseconds, or two where there is one
+    thread anyway. Only libraries that are loaded when the object is made are limited, so NumPy must be.
     """
 
     def __init__(self) -> None:
@@ -46,6 +46,8 @@ class OneBlasThread:
 
     def block(self) -> AbstractContextManager[object]:
         """A context with one thread."""
+        if all(library.num_threads == 1 for library in self._libraries.lib_controllers):
+            return nullcontext()
         limited: AbstractContextManager[object] = self._libraries.limit(limits=1)
         return limited
 

@@ -67,9 +67,9 @@ class ChangedStage:
         found = self._own.process(colour) if self._search is None else self._search(colour)
         return found if self._change is None else self._change(found)
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
         """Look at predicted boxes, where this stage does."""
-        found = self._own.follow(colour, boxes) if self._follows else None
+        found = self._own.follow(image, boxes) if self._follows else None
         return found if found is None or self._change is None else self._change(found)
 
 

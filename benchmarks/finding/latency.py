@@ -92,9 +92,9 @@ class WatchedRegions:
         self.searches += 1
         return self._stage.process(colour)
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
         """Look at predicted boxes."""
-        return self._stage.follow(colour, boxes)
+        return self._stage.follow(image, boxes)
 
 
 def open_stage(engine: Engine) -> Finder:
@@ -183,11 +183,11 @@ def fresh_start(engine: Engine) -> tuple[float, float | None]:
     return ready - start, peak
 
 
-def fresh_starts() -> Table:
-    """Median of some starts of each engine."""
+def fresh_starts(count: int = STARTS) -> Table:
+    """Median of so many starts of each engine."""
     rows: list[dict[str, Cell]] = []
     for engine in engines():
-        starts = [fresh_start(engine) for _ in range(STARTS)]
+        starts = [fresh_start(engine) for _ in range(count)]
         peaks = [peak for _, peak in starts if peak is not None]
         rows.append(
             {

@@ -19,7 +19,7 @@ from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalPart
 from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import evaluate
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
-from lightgesture.features.types import Box, Candidates, Float, HandRegion
+from lightgesture.features.types import Box, Candidates, Float, HandRegion, Image
 
 COLUMNS: Final = cells.COLUMNS + BANK_NUMBERS
 """Numbers of one region."""
@@ -101,7 +101,7 @@ class ClassicalSelector:
         )
         return Candidates(regions, together, colour.source_size)
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
         """None: this choice cannot but search."""
-        del colour, boxes
+        del image, boxes
         return None

@@ -1,6 +1,10 @@
 """The learned choice: the locator says where hands are, the refiner looks again, trees weigh both."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations
+from operator import itemgetter
 from typing import Final
 
 import cv2
@@ -9,22 +13,24 @@ import numpy as np
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.candidates import (
     APART_IOU,
+    DISTINCT_IOU,
+    LEAST_SCORE,
     Rows,
     best_distinct,
     candidate_rows,
     describe_places,
     score_pairs,
 )
+from lightgesture.features.find.locator import INPUT as LOCATOR_INPUT
 from lightgesture.features.find.locator import Locator, Peaks, find_peaks
-from lightgesture.features.find.refiner import Refined, Refiner
+from lightgesture.features.find.refiner import INPUT as REFINER_INPUT
+from lightgesture.features.find.refiner import Rectangle, Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
 from lightgesture.features.find.settings import LEARNED, SelectorSettings
 from lightgesture.features.find.trees import evaluate
-from lightgesture.features.geometry import pairwise_iou, scale_boxes
+from lightgesture.features.geometry import box_iou, pairwise_iou, whole_box
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.net.runner import logistic
-from lightgesture.features.standardise import channel_tables
-from lightgesture.features.types import Box, Candidates, Float, HandRegion
+from lightgesture.features.types import Box, Candidates, Float, HandRegion, Image
 
 INNER: Final = 0.5
 """Side of the middle of a box, over the box's, whose mean colour stands for the hand's."""
@@ -40,11 +46,15 @@ class Places:
 
     def __init__(self, locator: IntegerNetwork, refiner: IntegerNetwork) -> None:
         self._locator, self.refiner = Locator(locator), Refiner(refiner)
+        # As trained here both see colours by the same integers, which are then made once.
+        self._is_alike = locator.quantisation[LOCATOR_INPUT] == refiner.quantisation[REFINER_INPUT]
 
     def find(self, colour: ColourMap) -> tuple[Peaks, Refined]:
         """Peaks of the locator and what the refiner says of each."""
-        tables = channel_tables(colour.picture)
+        tables = self._locator.table(colour.picture)
         peaks = find_peaks(self._locator.process(colour.picture, tables))
+        if not self._is_alike:
+            tables = self.refiner.table(colour.picture)
         return peaks, self.refiner.process(colour, peaks.boxes, tables)
 
 
@@ -70,22 +80,33 @@ class LearnedSelector:
             face = face[0] * colour.scale[0], face[1] * colour.scale[1]
         return Candidates(found, together, colour.source_size, face)
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates:
-        """Look only at predicted boxes, one or more, source pixels: far quicker than a search, and blind for the rest.
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates:
+        """Look only at boxes of a frame, one or more, source pixels: far quicker than a search, and blind for the rest.
 
         The refiner alone decides, so a score is what its refined boxes of this logit overlap a hand by on average; that
-        of a pair is the lower one.
+        of a pair is the lower one. Few boxes: the calls on arrays would take longer than the numbers.
         """
-        scale = np.tile(np.array(colour.scale, np.float32), 2)
-        predicted = np.asarray(np.array(boxes, np.float32).reshape(-1, 4) / scale, np.float32)
-        refined = self._nets.refiner.process(colour, predicted, channel_tables(colour.picture))
-        scores = np.asarray(HAND_IOU * logistic(refined.hand), np.float32)
-        overlap = pairwise_iou(refined.boxes, refined.boxes)
-        kept = best_distinct(overlap, scores)
-        apart = overlap[np.ix_(kept, kept)] <= APART_IOU
-        scores = scores[kept]
-        together = np.where(apart, np.minimum.outer(scores, scores), 0.0).astype(np.float32)
-        return Candidates(regions_at(colour, refined.boxes[kept], scores), together, colour.source_size)
+        size = image.shape[1], image.shape[0]
+        found, hand = self._nets.refiner.look(image, boxes)
+        scored = sorted(
+            (
+                (HAND_IOU * _chance(logit), region_at(box, size))
+                for box, logit in zip(found, hand, strict=True)
+            ),
+            key=itemgetter(0),
+            reverse=True,
+        )
+        kept: list[tuple[float, HandRegion]] = []
+        for score, region in scored:
+            if score >= LEAST_SCORE and all(
+                box_iou(region.box, other.box) < DISTINCT_IOU for _, other in kept
+            ):
+                kept.append((score, replace(region, confidence=score)))
+        together = np.zeros((len(kept), len(kept)), np.float32)
+        for (first, (_, one)), (second, (score, other)) in combinations(enumerate(kept), 2):
+            if box_iou(one.box, other.box) <= APART_IOU:
+                together[first, second] = together[second, first] = score
+        return Candidates(tuple(region for _, region in kept), together, size)
 
 
 def scored_places(colour: ColourMap, peaks: Peaks, refined: Refined, scores: Float) -> tuple[list[int], Rows]:
@@ -113,17 +134,24 @@ def mean_colour(colour: ColourMap, box: Float) -> Float:
 def regions_at(colour: ColourMap, boxes: Float, scores: Float) -> tuple[HandRegion, ...]:
     """Boxes of the working picture, float32 (n, 4), as regions in source pixels, without outlines.
 
-    scores: float32 (n,). The other extent of each is a little tighter.
+    scores: float32 (n,).
     """
-    whole = boxes.astype(np.float64)
-    low, sides = whole[:, :2], whole[:, 2:]
-    tight = np.hstack([low + TIGHTER * sides / 2, (1.0 - TIGHTER) * sides])
-    extents = scale_boxes(np.concatenate([whole, tight]), colour.scale, colour.source_size)
-    confidences = scores.astype(np.float64).clip(0.0, 1.0).tolist()
-    found = [
-        HandRegion(box, NO_OUTLINE, None, confidence, (inner,))
-        for box, inner, confidence in zip(
-            extents[: len(boxes)], extents[len(boxes) :], confidences, strict=True
-        )
-    ]
+    across, down = colour.scale
+    found = []
+    for (x, y, width, height), score in zip(boxes.tolist(), scores.tolist(), strict=True):
+        place = x * across, y * down, width * across, height * down
+        found.append(region_at(place, colour.source_size, min(max(score, 0.0), 1.0)))
     return tuple(found)
+
+
+def region_at(place: Rectangle, size: tuple[int, int], confidence: float = 0.0) -> HandRegion:
+    """A place in a frame of `size` (width, height) as a region; its other extent is a little tighter."""
+    x, y, width, height = place
+    in_x, in_y = TIGHTER * width / 2, TIGHTER * height / 2
+    inner = x + in_x, y + in_y, width - 2 * in_x, height - 2 * in_y
+    return HandRegion(whole_box(place, size), NO_OUTLINE, None, confidence, (whole_box(inner, size),))
+
+
+def _chance(logit: float) -> float:
+    """1 / (1 + exp(-logit)), of any logit that eight bits can stand for."""
+    return 1.0 / (1.0 + math.exp(-logit))

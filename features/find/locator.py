@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.net.runner import Network, logistic
+from lightgesture.features.net.runner import Levels, Network, logistic
+from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Float, Image
 
 MULTIPLE: Final = 16
@@ -55,12 +56,16 @@ class Locator:
     def __init__(self, network: IntegerNetwork) -> None:
         self._network = Network(network)
 
-    def process(self, picture: Image, tables: Float) -> Float:
+    def table(self, picture: Image) -> Levels:
+        """int8 (1, 256, 3): the integer that stands for each value of each channel of a picture."""
+        return self._network.table(INPUT, channel_tables(picture))
+
+    def process(self, picture: Image, tables: Levels) -> Float:
         """Maps of a working picture, float32 (6, h, w) on cells of 4 pixels; see `HAND`.
 
-        picture: uint8 (height, width, 3), BGR. tables: of `standardise.channel_tables`.
+        picture: uint8 (height, width, 3), BGR. tables: its `table`.
         """
-        seen = np.asarray(cv2.LUT(picture, self._network.table(INPUT, tables)), np.int8)
+        seen = np.asarray(cv2.LUT(picture, tables), np.int8)
         maps = self._network.run({INPUT: padded(seen, self._network.zero(INPUT))})
         return np.concatenate([maps[HEAT][0], maps[EDGES][0]], axis=2).transpose(2, 0, 1)
 

@@ -12,11 +12,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.colour import ColourMap
-from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.net.runner import Network
-from lightgesture.features.patch import Square, cut_squares, squares_round
-from lightgesture.features.standardise import luma_tables
+from lightgesture.features.colour import WORKING_PIXELS, ColourMap
+from lightgesture.features.net.network import IntegerNetwork, Quantisation
+from lightgesture.features.net.runner import Levels, Network
+from lightgesture.features.patch import Square, cut_squares, shrink_square, squares_round
+from lightgesture.features.standardise import (
+    as_levels,
+    channel_tables,
+    level_tables,
+    luma_tables,
+    scales_of,
+    square_roots,
+)
 from lightgesture.features.types import Float, Image
 
 INPUT, HAND, BOX = "windows", "hand", "box"
@@ -32,6 +39,11 @@ LEAST_WINDOW: Final = 0.125
 """Least side of a window over its size."""
 LARGEST_WINDOW: Final = 2.0
 """Largest side of a window over the longer side of the picture."""
+SAMPLE: Final = (80, 60)
+"""Width and height of what stands for a whole frame where only its mean colours are asked for."""
+
+Rectangle = tuple[float, float, float, float]
+"""x, y, width, height."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,30 +63,76 @@ class Refiner:
     def __init__(self, network: IntegerNetwork) -> None:
         self._network = Network(network)
 
-    def process(self, colour: ColourMap, boxes: Float, tables: Float) -> Refined:
+    def table(self, picture: Image) -> Levels:
+        """int8 (1, 256, 3): the integer that stands for each value of each channel of a picture."""
+        return self._network.table(INPUT, channel_tables(picture))
+
+    def process(self, colour: ColourMap, boxes: Float, tables: Levels) -> Refined:
         """Look at the places of `boxes`, float32 (n, 4), working pixels.
 
-        tables: of `standardise.channel_tables` over the working picture.
+        tables: `table` of the working picture.
         """
         if not len(boxes):
             return Refined(np.zeros((0, 4), np.float32), np.zeros(0, np.float32))
-        scale = np.float32(colour.detail.shape[1] / colour.picture.shape[1])
-        windows = windows_round(boxes * scale, colour.detail)
+        scale = colour.detail.shape[1] / colour.picture.shape[1]
+        windows = windows_round(boxes * np.float32(scale), colour.detail)
         cuts = cut_windows(colour.detail, windows)
-        seen = np.empty((len(windows), SIZE, SIZE, 4), np.int8)
-        colours = cv2.LUT(cuts.reshape(-1, SIZE, 3), self._network.table(INPUT, tables))
-        seen[..., :3] = colours.reshape(cuts.shape)
         lumas, luma_values = luma_tables(cuts)
-        for window, luma, levels in zip(seen, lumas, self._network.table(INPUT, luma_values), strict=True):
-            window[..., 3] = cv2.LUT(luma, levels)
+        levels = [
+            cv2.LUT(luma, table)
+            for luma, table in zip(lumas, self._network.table(INPUT, luma_values), strict=True)
+        ]
+        found, hand = self._run(_with_luma(cuts, tables, np.concatenate(levels)), windows)
+        return Refined(np.array(found, np.float32) / np.float32(scale), np.array(hand, np.float32))
+
+    def look(self, image: Image, boxes: Sequence[Sequence[float]]) -> tuple[list[Rectangle], list[float]]:
+        """Look at boxes of a whole frame, one or more, source pixels: the refined boxes and the logit of each.
+
+        No working picture is needed: windows are cut from the frame itself, and its colours are told from a sample.
+        """
+        height, width = image.shape[:2]
+        sample = image
+        if width * height > SAMPLE[0] * SAMPLE[1]:
+            sample = np.asarray(cv2.resize(image, SAMPLE, interpolation=cv2.INTER_LINEAR), np.uint8)
+        # As small as a window of the working picture's detail may be, which has about so many pixels.
+        least = LEAST_WINDOW * SIZE * max((width * height / (4 * WORKING_PIXELS)) ** 0.5, 1.0)
+        windows = squares_round(boxes, CONTEXT, least, LARGEST_WINDOW * max(width, height))
+        cuts = np.empty((len(windows), SIZE, SIZE, 3), np.uint8)
+        for cut, square in zip(cuts, cut_squares(image, windows), strict=True):
+            shrink_square(square, cut)
+        quantisation = self._network.quantisation(INPUT)
+        tables = level_tables(sample, quantisation)
+        return self._run(_with_luma(cuts, tables, _luma_levels(cuts, quantisation)), windows)
+
+    def _run(self, seen: Levels, windows: Sequence[Square]) -> tuple[list[Rectangle], list[float]]:
+        """Refined boxes in the pixels of the windows, and logits, of what n windows show, int8 (n, SIZE, SIZE, 4)."""
         outputs = self._network.run({INPUT: seen})
-        edges = outputs[BOX].reshape(len(boxes), 4)
-        places = np.array(windows, np.float32)
-        sides = places[:, 2:]
-        centres = places[:, :2] + sides / 2
-        low, high = centres + edges[:, :2] * sides, centres + edges[:, 2:] * sides
-        found = np.hstack([low, np.maximum(high - low, LEAST_SIDE)]) / scale
-        return Refined(np.asarray(found, np.float32), outputs[HAND].reshape(len(boxes)))
+        found = []
+        for (left, top, side), (x0, y0, x1, y1) in zip(
+            windows, outputs[BOX].reshape(len(windows), 4).tolist(), strict=True
+        ):
+            x, y = left + (0.5 + x0) * side, top + (0.5 + y0) * side
+            found.append((x, y, max((x1 - x0) * side, LEAST_SIDE), max((y1 - y0) * side, LEAST_SIDE)))
+        return found, outputs[HAND].ravel().tolist()
+
+
+def _luma_levels(cuts: NDArray[np.uint8], quantisation: Quantisation) -> Levels:
+    """int8 (n * SIZE, SIZE): the luma of each of n windows, standardised by itself; see `luma_tables`."""
+    luma = np.asarray(cv2.cvtColor(cuts.reshape(-1, SIZE, 3), cv2.COLOR_BGR2GRAY), np.uint8)
+    roots = square_roots(luma)
+    levels = np.empty(luma.shape, np.int8)
+    for first in range(0, len(luma), SIZE):
+        own = slice(first, first + SIZE)
+        ((factor, offset),) = scales_of(luma[own], roots[own], quantisation)
+        levels[own] = as_levels(roots[own], quantisation, factor, offset)
+    return levels
+
+
+def _with_luma(cuts: NDArray[np.uint8], tables: Levels, luma: Levels) -> Levels:
+    """int8 (n, SIZE, SIZE, 4): blue, green and red of windows by the tables of their frame, and luma as it is."""
+    # Several times as fast as laying channels side by side with NumPy.
+    seen = cv2.merge([cv2.LUT(cuts.reshape(-1, SIZE, 3), tables), luma])
+    return np.asarray(seen, np.int8).reshape(*cuts.shape[:3], 4)
 
 
 def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:

@@ -66,6 +66,10 @@ class Network:
         """Values of an input as its integers."""
         return quantise(values, self._network.quantisation[name])
 
+    def quantisation(self, name: str) -> Quantisation:
+        """Which integers stand for the values of an input."""
+        return self._network.quantisation[name]
+
     def zero(self, name: str) -> int:
         """The integer that stands for the value 0 of an input."""
         return self._network.quantisation[name].zero

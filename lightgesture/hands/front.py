@@ -20,6 +20,7 @@ from lightgesture.hands.hidden import HiddenHands
 from lightgesture.hands.memory import ReadingMemory
 from lightgesture.hands.pictures import draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.hands.reading import HandInView
+from lightgesture.hands.repeats import LastFrame
 from lightgesture.records import Hand
 
 HIDDEN: Final = Sign(None, 0.0, reason="occluded")
@@ -35,8 +36,8 @@ class Finder(Protocol):
         """Search one frame."""
         ...
 
-    def follow(self, colour: ColourMap, boxes: Sequence[Box]) -> Candidates | None:
-        """Look at predicted boxes alone, one or more, source pixels; None where it cannot but search."""
+    def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
+        """Look at boxes of a frame alone, one or more, source pixels; None where it cannot but search."""
         ...
 
 
@@ -112,7 +113,8 @@ class HandReader(FrontEnd):
     def _begin(self) -> None:
         """What remembers the stream, and what was made of its last frame."""
         self._track, self._memory = self._make_track(), self._make_memory()
-        self._hidden = HiddenHands()
+        self._hidden, self._last = HiddenHands(), LastFrame()
+        self._found: tuple[Candidates, bool] | None = None
         self._upright: Image | None = None
         self._map: ColourMap | None = None
         self._candidates: Candidates | None = None
@@ -127,9 +129,9 @@ class HandReader(FrontEnd):
 
     def process(self, image: Image, time_s: float) -> Signs:
         """The signs of both hands in the next frame; another size than before ends the tracks."""
-        upright, colour = self._look(image)
+        upright = self._turn_upright(image)
         self.clock.lap("colour")
-        candidates, is_whole = self._search(colour, time_s)
+        self._found = candidates, is_whole = self._search(upright, time_s)
         self.clock.lap("regions")
         self._tracks = self._track.update(candidates, time_s, whole=is_whole)
         self.clock.lap("tracks")
@@ -141,10 +143,15 @@ class HandReader(FrontEnd):
         # What is hidden in its place is shown all the same, and not read.
         return Signs(HIDDEN, HIDDEN) if self._hidden.process(self._tracks) else self._signs()
 
+    @property
+    def is_searched(self) -> bool:
+        """Whether the whole of the last frame was searched; else its hands were only followed."""
+        return self._found is not None and self._found[1]
+
     def recognize(self, image: Image) -> Signs:
         """The signs of both hands in a picture on its own."""
-        upright, colour = self._look(image)
-        self._candidates, self._tracks = self._find.process(colour), None
+        upright = self._turn_upright(image)
+        self._candidates, self._tracks = self._find.process(self._colours(upright)), None
         chosen = choose(self._candidates, self._find.settings)
         self._hands = self._read.process(upright, chosen, self._candidates.face)
         return self._signs()
@@ -157,20 +164,25 @@ class HandReader(FrontEnd):
 
     def pictures(self) -> Iterator[tuple[str, Image]]:
         """See FrontEnd; of a picture on its own there are no tracks."""
-        if self._upright is None or self._map is None or self._candidates is None:
+        if self._upright is None or self._candidates is None:
             return
-        yield "colour", draw_colour(self._map)
+        yield "colour", draw_colour(self._map or self._colours(self._upright))
         yield "regions", draw_regions(self._upright, self._candidates)
         if self._tracks is not None:
             yield "tracks", draw_tracks(self._upright, self._tracks)
         yield "classify", draw_hands(self._upright, self._hands)
 
-    def _look(self, image: Image) -> tuple[Image, ColourMap]:
+    def _turn_upright(self, image: Image) -> Image:
         # A thermal camera's grey frames must reach the classifier in colours as well.
         picture = turned(as_bgr8(image), self._rotate)
         self._upright = np.ascontiguousarray(picture[:, ::-1]) if self._mirrored else picture
-        self._map = self._colour.process(self._upright)
-        return self._upright, self._map
+        self._map = None
+        return self._upright
+
+    def _colours(self, upright: Image) -> ColourMap:
+        """The colour map of the frame, which only a search needs."""
+        self._map = self._colour.process(upright)
+        return self._map
 
     def _as_it_came(self, box: Box) -> Box:
         """A box of the upright picture in the picture as it came."""
@@ -179,13 +191,18 @@ class HandReader(FrontEnd):
         box = mirror_box(box, width) if self._mirrored else box
         return turn_box(box, (width, height), -self._rotate)
 
-    def _search(self, colour: ColourMap, time_s: float) -> tuple[Candidates, bool]:
-        """Candidates of the next frame, and whether the whole of it was searched: only where no predicted box holds
-        what it should."""
-        predicted = self._track.predict(time_s)
-        followed = self._find.follow(colour, predicted) if predicted else None
+    def _search(self, upright: Image, time_s: float) -> tuple[Candidates, bool]:
+        """Candidates of the next frame, and whether the whole of it was searched: only where a look at the hands
+        finds not what it should. In a frame that equals the last one there is what was found in that."""
+        boxes = self._track.predict(time_s)
+        if self._last.equals(upright) and self._found is not None and (boxes or self._found[1]):
+            return self._found
+        followed = self._find.follow(upright, boxes) if boxes else None
         if followed is not None and self._track.explains(followed):
             return followed, False
+        self.clock.lap("regions")
+        colour = self._colours(upright)
+        self.clock.lap("colour")
         return self._find.process(colour), True
 
     def _signs(self) -> Signs:

@@ -8,6 +8,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.hands.looks import LastLooks
+
 HOLD_SHARE: Final = 1 / 3
 """Of the hold that is looked at: long enough to bridge a bad frame or two, and too short to make or hide a sign."""
 SENTENCE_SHARE: Final = 1 / 2
@@ -26,16 +28,21 @@ class ReadingMemory:
     frames: how many frames are looked at, this one included, at least 1. seconds: for how long one is, infinite where
     frames alone count. The median of each class's probability stands for the frame: it bridges fewer bad frames than
     half of what is looked at, and goes from one sign to the next in one step.
+
+    looks: the last readings, which may stand for a moment; None where each frame is to be read, and one alone counts.
     """
 
     def __init__(self, frames: int = 1, seconds: float = math.inf) -> None:
         self._frames, self._seconds = frames, seconds
+        self.looks = LastLooks() if frames > 1 else None
         self._rows: dict[int, deque[tuple[float, NDArray[np.float32]]]] = {}
 
     def keep_only(self, tracks: Sequence[int | None]) -> None:
         """Forget the hands that are not among these: one that comes back may show another sign."""
         for number in self._rows.keys() - set(tracks):
             del self._rows[number]
+        if self.looks is not None:
+            self.looks.keep_only(tracks)
 
     def steady(self, track: int | None, row: NDArray[np.float32], time_s: float) -> NDArray[np.float32]:
         """The probabilities (classes,) of a hand now, from those of its last frames; of no track: as they are."""
@@ -47,7 +54,16 @@ class ReadingMemory:
             rows.popleft()
         if len(rows) < FEWEST_FOR_A_MEDIAN:
             return row
-        return np.asarray(np.median([one for _, one in rows], axis=0), np.float32)
+        return middle(np.array([one for _, one in rows]))
+
+
+def middle(rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The median of each column of rows (n, k), n being 1 or more: `numpy.median`, which takes ten times as long for a
+    few rows."""
+    ordered, half = np.sort(rows, axis=0), len(rows) // 2
+    if len(rows) % 2:
+        return np.asarray(ordered[half])
+    return np.asarray((ordered[half - 1] + ordered[half]) / np.float32(2.0))
 
 
 NO_MEMORY: Final = ReadingMemory(1)

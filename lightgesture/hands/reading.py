@@ -2,16 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.types import Box, Image, Side
+from lightgesture.hands.looks import LastLooks, Look, says_the_same
 from lightgesture.hands.memory import NO_MEMORY, ReadingMemory
 from lightgesture.models import NONE, Classifier
 from lightgesture.records import Hand
 
+Row = NDArray[np.float32]
+"""Probabilities of the classes, or rows of them."""
 Extents = Literal["clearest", "mean"]
 """What stands for a hand that may have several extents: the one in which some token is likeliest, which is the
 sharpest and can be sharply wrong where a box cuts off a finger, or the mean of all of them, which is in doubt where
@@ -123,8 +127,12 @@ def read_token(
 
 def clearest(rows: NDArray[np.float32], classes: Sequence[str]) -> int:
     """The row (extents, classes) in which some token, not `none`, is most likely."""
-    tokens = [column for column, name in enumerate(classes) if name != NONE]
-    return int(rows[:, tokens].max(axis=1).argmax())
+    return int(rows[:, _token_columns(tuple(classes))].max(axis=1).argmax())
+
+
+@lru_cache(maxsize=4)
+def _token_columns(classes: tuple[str, ...]) -> NDArray[np.intp]:
+    return np.array([column for column, name in enumerate(classes) if name != NONE], np.intp)
 
 
 class ReadingStage:
@@ -156,37 +164,79 @@ class ReadingStage:
         memory.keep_only([hand.number for hand in hands])
         if not hands:
             return ()
-        boxes = [box for hand in hands for box in (hand.box, *hand.alternatives)]
-        sides = [hand.side or "right" for hand in hands for _ in range(1 + len(hand.alternatives))]
-        rows = self._classifier.probabilities(image, boxes, sides)
+        looks = memory.looks
+        standing = [
+            None if looks is None else looks.standing(image, hand.number, hand.box, time_s) for hand in hands
+        ]
+        fresh = iter(
+            self._read_anew(
+                image, [hand for hand, look in zip(hands, standing, strict=True) if not look], looks, time_s
+            )
+        )
         read = []
-        first = 0
-        for hand in hands:
-            last = first + 1 + len(hand.alternatives)
+        for hand, look in zip(hands, standing, strict=True):
+            if look is None:
+                found = next(fresh)
+                row, extent = found[:2]
+                if looks is not None:
+                    looks.keep(image, hand.number, hand.box, found, time_s)
+            else:
+                row, extent = look.row, look.extent
             others = [other.box for other in hands if other is not hand]
             crowded = is_crowded(hand.box, others, face, self._settings)
-            read.append(self._read(image, hand, boxes[first:last], rows[first:last], crowded, memory, time_s))
-            first = last
+            steady = memory.steady(hand.number, row, time_s)
+            read.append(self._named(image, hand, extent, steady, crowded))
         return tuple(read)
 
-    def _read(
-        self,
-        image: Image,
-        hand: HandInView,
-        boxes: Sequence[Box],
-        rows: NDArray[np.float32],
-        crowded: bool,
-        memory: ReadingMemory,
-        time_s: float,
+    def _read_anew(
+        self, image: Image, hands: Sequence[HandInView], looks: LastLooks | None, time_s: float
+    ) -> list[tuple[Row, int, Row, float]]:
+        """Of each hand: its probabilities (classes,), the number of the extent in which it reads most clearly, those of
+        its other extents, and when these were read: not now where they would tell nothing."""
+        recent = [None if looks is None else looks.recent(hand.number, hand.box, time_s) for hand in hands]
+        asked = [
+            (hand, (hand.box, *(() if look else hand.alternatives)))
+            for hand, look in zip(hands, recent, strict=True)
+        ]
+        rows = self._probabilities(image, asked)
+        missing = [
+            (hand, () if look is None or says_the_same(own[0], look) else hand.alternatives)
+            for hand, look, own in zip(hands, recent, rows, strict=True)
+        ]
+        more = self._probabilities(image, missing)
+        return [self._joined(*one, time_s) for one in zip(recent, rows, more, strict=True)]
+
+    def _joined(self, look: Look | None, rows: Row, more: Row, time_s: float) -> tuple[Row, int, Row, float]:
+        """What is read of a hand from rows of its box and, where there is no recent look, of its other extents; more:
+        those of them that were read after all."""
+        others, others_s = rows[1:], time_s
+        if look is not None:
+            others, others_s = (more, time_s) if len(more) else (look.others, look.others_s)
+        own = np.concatenate([rows[:1], others])
+        extent = clearest(own, self._classifier.classes) if len(own) > 1 else 0
+        row = own[extent] if self._settings.extents == "clearest" else own.mean(axis=0)
+        return row, extent, others, others_s
+
+    def _probabilities(self, image: Image, asked: Sequence[tuple[HandInView, Sequence[Box]]]) -> list[Row]:
+        """Rows (boxes, classes) of some boxes of each hand, in one call for all."""
+        boxes = [box for _, own in asked for box in own]
+        sides = [hand.side or "right" for hand, own in asked for _ in own]
+        if not boxes:
+            return [np.empty((0, len(self._classifier.classes)), np.float32)] * len(asked)
+        rows, found, first = self._classifier.probabilities(image, boxes, sides), [], 0
+        for _, own in asked:
+            found.append(rows[first : first + len(own)])
+            first += len(own)
+        return found
+
+    def _named(
+        self, image: Image, hand: HandInView, extent: int, row: NDArray[np.float32], crowded: bool
     ) -> Hand:
-        """The hand with the box in which it reads most clearly."""
+        """The hand with its token, in the box of an extent."""
         classes = self._classifier.classes
-        place = clearest(rows, classes)
-        row = rows[place] if self._settings.extents == "clearest" else rows.mean(axis=0)
-        steady = memory.steady(hand.number, row, time_s)
-        box = boxes[place]
+        box = hand.alternatives[extent - 1] if 0 < extent <= len(hand.alternatives) else hand.box
         at_edge = _touches_edge(box, (image.shape[1], image.shape[0]), self._settings.edge_share)
-        token, confidence, reason = read_token(steady, classes, at_edge, crowded, self._settings)
+        token, confidence, reason = read_token(row, classes, at_edge, crowded, self._settings)
         return Hand(
             side=hand.side or "right",
             token=token,
@@ -194,5 +244,5 @@ class ReadingStage:
             box=box,
             track=hand.number,
             reason=reason,
-            probabilities=dict(zip(classes, steady.tolist(), strict=True)),
+            probabilities=dict(zip(classes, row.tolist(), strict=True)),
         )

@@ -28,11 +28,12 @@ if TYPE_CHECKING:
 CODEC: Final = "libx264"
 """An encoder of FFmpeg that PyAV brings."""
 
-QUALITY: Final = 23
-"""Constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is sensible, 23 its own default."""
+QUALITY: Final = 25
+"""Constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is sensible."""
 
-PRESET: Final = "veryfast"
-"""Of x264; slower ones make smaller files."""
+PRESET: Final = "superfast"
+"""Of x264; slower ones make smaller files. At this quality the picture differs from the drawn one no more than with
+`veryfast` and 23, which takes half as long again for two thirds of the bytes."""
 
 TICKS_PER_S: Final = 90_000
 """Of the file's clock: MPEG's, which holds all usual rates exactly."""

@@ -55,11 +55,16 @@ def _colour(scene):
     return ColourStage().process(scene)
 
 
-@pytest.fixture(name="diver", scope="module")
-def _diver():
+@pytest.fixture(name="frame", scope="module")
+def _frame():
     """A frame of the bundled clip."""
     with open_source(SAMPLE) as source:
-        return ColourStage().process(next(frame.image for frame in source if frame.index == 60))
+        return next(frame.image for frame in source if frame.index == 60)
+
+
+@pytest.fixture(name="diver", scope="module")
+def _diver(frame):
+    return ColourStage().process(frame)
 
 
 @pytest.fixture(name="parts", scope="module")
@@ -140,18 +145,18 @@ def test_each_net_alone_has_its_own_boxes(diver):
         assert best.box == pytest.approx(tuple(expected), abs=1.0)
 
 
-def test_a_changed_stage_changes_what_is_followed_too(diver):
+def test_a_changed_stage_changes_what_is_followed_too(diver, frame):
     predicted = [region.box for region in load_selector("learned").process(diver).regions[:2]]
 
     def forget(found):
         return replace(found, regions=found.regions[:1], pairs=found.pairs[:1, :1])
 
-    own = load_selector("learned").follow(diver, predicted)
+    own = load_selector("learned").follow(frame, predicted)
     assert own is not None
     changed = ChangedStage("learned", change=forget)
-    assert len(changed.follow(diver, predicted).regions) == min(len(own.regions), 1)
+    assert len(changed.follow(frame, predicted).regions) == min(len(own.regions), 1)
     assert len(changed.process(diver).regions) == 1
-    assert ChangedStage("learned", follows=False).follow(diver, predicted) is None
+    assert ChangedStage("learned", follows=False).follow(frame, predicted) is None
     nothing = Candidates((), np.zeros((0, 0), np.float32), (640, 480))
     assert ChangedStage("classical", lambda _: nothing).process(diver) is nothing
 

@@ -36,6 +36,7 @@ class FakePipeline:
         self.front.clock.start()
         for stage in ("colour", "tracks"):
             self.front.clock.lap(stage)
+        self.front.clock.end_frame()
         self.threads.add(cv2.getNumThreads())
 
     def recognize(self, image):
@@ -61,7 +62,9 @@ def fake_pipelines(monkeypatch):
 
 @pytest.fixture
 def no_starts(monkeypatch):
-    monkeypatch.setattr(latency, "fresh_starts", lambda: Table("starts", "Starts", ("seconds",), ()))
+    monkeypatch.setattr(latency, "fresh_starts", lambda count=1: Table("starts", "Starts", ("seconds",), ()))
+    side = Table("side_by_side", "Side by side", ("size", "what"), ({"size": "640x480", "what": "copy"},))
+    monkeypatch.setattr(latency, "side_by_side", lambda *frames: [side])
 
 
 @pytest.fixture
@@ -123,9 +126,17 @@ def test_table_and_file(data, tmp_path, capsys):
     content = json.loads(out.read_text())
     assert content["machine"]["opencv"] == cv2.__version__
     assert content["settings"]["rounds"] == 2
-    assert {row["clip"] for row in content["rows"]} == {"hover"}
-    assert {row["table"] for row in content["rows"]} == {"latency", "finding"}
+    assert {row["clip"] for row in content["rows"] if row["table"] != "side_by_side"} == {"hover"}
+    assert {row["table"] for row in content["rows"]} == {"side_by_side", "latency", "finding"}
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("times")] == ["times.json"]
+
+
+@pytest.mark.usefixtures("no_sample", "no_starts")
+def test_a_quick_run_is_of_one_size_and_writes_the_same_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(latency, "read_clips", lambda folder: {"clip": [np.zeros((48, 64, 3), np.uint8)] * 3})
+    assert latency.main(["--quick", "--json", str(tmp_path / "times.json")]) == 0
+    content = json.loads((tmp_path / "times.json").read_text())
+    assert {row["table"] for row in content["rows"]} == {"side_by_side"}
 
 
 @pytest.mark.usefixtures("no_sample", "no_starts", "fake_pipelines")

@@ -6,7 +6,7 @@ import pytest
 
 from lightgesture.features.net.network import Quantisation
 from lightgesture.features.net.runner import dequantise, quantise
-from lightgesture.features.standardise import LARGEST, channel_tables, luma_tables, patch_levels
+from lightgesture.features.standardise import LARGEST, channel_tables, level_tables, luma_tables, patch_levels
 
 FINE = Quantisation(3.0 / 127.5, -1)
 
@@ -62,3 +62,14 @@ def test_lumas_of_many_pictures_are_those_of_each_alone():
         np.testing.assert_array_equal(luma, cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY))
         seen = table[luma]
         assert (seen.mean(), seen.std()) == pytest.approx((0.0, 1.0), abs=0.25)
+
+
+@pytest.mark.parametrize("quantisation", [FINE, Quantisation(0.05, 3), Quantisation(0.01, -100)])
+@pytest.mark.parametrize("dark", [1, 4, 60])
+def test_tables_of_integers_are_those_of_the_histogram(dark, quantisation):
+    picture = (np.random.default_rng(dark).integers(0, 256, (60, 80, 3)) // dark).astype(np.uint8)
+    off = np.abs(
+        level_tables(picture, quantisation).astype(int) - quantise(channel_tables(picture), quantisation)
+    )
+    assert off.max() <= 1
+    assert (off > 0).mean() < 0.05

@@ -62,7 +62,7 @@ def hard_regions(
     net, stage, found = Locator(locator), ColourStage(), []
     for picture in pictures:
         colour = stage.process(picture.image)
-        maps = net.process(colour.picture, channel_tables(colour.picture))
+        maps = net.process(colour.picture, net.table(colour.picture))
         boxes = find_peaks(maps, MOST_PEAKS, LEAST_HEAT).boxes * np.tile(
             np.array(colour.scale, np.float32), 2
         )

@@ -97,8 +97,8 @@ class SkinLoops:
         / 2^SHARE_BITS.
     redness: (picture, red, shift, blue table, green table, red table) -> uint16 (h, w): what the three tables, float32
         and whole numbers, add up to at a pixel's blue, green and red / 2^shift, blurred by 1-2-1 along x and y.
-    counts: (values, lowest, highest, shift) -> int64 (bins,): how many of uint16 (h, w) lie in each bin, whose number is
-        (value - lowest) / 2^shift.
+    counts: (values, lowest, highest, shift) -> int64 (bins,): how many of uint16 (h, w) lie in each bin, whose number
+        is (value - lowest) / 2^shift.
     look_up: (values, lowest, shift, levels) -> uint8 (h, w): of each value what levels, uint8 (bins,), has for its bin.
     """
 

@@ -67,8 +67,8 @@ def write_selector(classical: ClassicalParts, learned: LearnedParts, path: Path)
 
 
 def write_classical(classical: ClassicalParts, origin: Path, path: Path) -> None:
-    """Write a selector's file in which the learned choice is that of the file `origin`, byte for byte. Raises ArchiveError,
-    UsageError."""
+    """Write a selector's file in which the learned choice is that of the file `origin`, byte for byte. Raises
+    ArchiveError, UsageError."""
     header, arrays = read_archive(origin, lambda name: name.startswith(selector_file.LEARNED_PARTS))
     _write(path, header, {**_classical_arrays(classical), **arrays})
 

@@ -16,7 +16,7 @@ from lightgesture.benchmarks.methods import Decoded, Image, Method
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.bank import bank_distances, hand_proximity
-from lightgesture.features.find.candidates import APART_IOU, best_distinct, score_pairs
+from lightgesture.features.find.candidates import APART_IOU, best_distinct, scored_pairs
 from lightgesture.features.find.classical import Loops, Scene, Scorer, other_extents, scored_candidates
 from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
 from lightgesture.features.find.proposals import LEVELS, Proposals, propose
@@ -28,6 +28,7 @@ from lightgesture.features.find.selector_file import (
     load_learned,
 )
 from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
+from lightgesture.features.find.trees import FlatTrees
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.runner import logistic
 from lightgesture.features.skin_map import redness, stretch
@@ -103,15 +104,16 @@ class ClassicalSearch:
 
     def __call__(self, colour: ColourMap) -> Candidates:
         proposals, scores = self.score(colour)
-        kept, items = scored_candidates(colour, proposals, scores)
+        overlap = pairwise_iou(proposals.boxes, proposals.boxes)
+        kept, items = scored_candidates(colour, proposals, scores, overlap)
         found = tuple(
             _region(colour, proposals.boxes[[index, *others]], float(scores[index]))
-            for index, others in zip(kept, other_extents(proposals, scores, kept), strict=True)
+            for index, others in zip(kept, other_extents(overlap, scores, kept), strict=True)
         )
         height, width = colour.picture.shape[:2]
         pairs = lower_of_both(found)
         if self.has_trees:
-            pairs = score_pairs(self.parts.pairs, items, (width, height), None)
+            pairs = scored_pairs(FlatTrees.of(self.parts.pairs).scores, items, (width, height), None)
         return Candidates(found, pairs, colour.source_size)
 
 

@@ -38,7 +38,7 @@ GRADIENT_FLOOR: Final = 5
 """Added to the mean gradient of the cells, in steps."""
 
 Sums = NDArray[np.int32]
-"""int32 (2 + DIRECTIONS, h + 1, w + 1): integral images of luma, skin and the gradient in each direction, 8 bits each."""
+"""int32 (2 + DIRECTIONS, h + 1, w + 1): integral images of luma, skin and the gradient in each direction, of 8 bits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,11 +12,12 @@ from typing import Final
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
 from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
-from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, score_pairs
+from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, scored_pairs
 from lightgesture.features.find.cells import PLAIN, CellLoops
 from lightgesture.features.find.proposals import (
     LEVELS,
@@ -67,10 +68,7 @@ class Scene:
 
     @classmethod
     def of(cls, colour: ColourMap, loops: Loops) -> "Scene":
-        if colour.skin_of is skin_map:
-            skin = skin_map(colour.picture, loops.skin)
-        else:
-            skin = colour.skin
+        skin = skin_map(colour.picture, loops.skin) if colour.skin_of is skin_map else colour.skin
         sums = cells.channel_sums(colour.picture, skin, loops.cells)
         return cls(skin, sums, (skin.shape[1], skin.shape[0]))
 
@@ -126,25 +124,29 @@ def mean_colour(colour: ColourMap, proposals: Proposals, index: int) -> Float:
     return np.array(means, np.float32) / np.float32(255.0)
 
 
-def scored_candidates(colour: ColourMap, proposals: Proposals, scores: Float) -> tuple[list[int], Rows]:
-    """Numbers of the proposals that go on to pairing, and what their pairs need."""
-    kept = best_distinct(pairwise_iou(proposals.boxes, proposals.boxes), scores)
+def scored_candidates(
+    colour: ColourMap, proposals: Proposals, scores: Float, overlap: NDArray[np.float64]
+) -> tuple[list[int], Rows]:
+    """Numbers of the proposals that go on to pairing, and what their pairs need. overlap: IoU of every two, (n, n)."""
+    kept = best_distinct(overlap, scores)
     colours = [mean_colour(colour, proposals, index) for index in kept]
     return kept, candidate_rows(proposals.boxes[kept], scores[kept], proposals.levels[kept], colours)
 
 
-def other_extents(proposals: Proposals, scores: Float, kept: Sequence[int]) -> list[list[int]]:
-    """For each kept proposal the best of the others that overlap it most among the kept."""
+def other_extents(overlap: NDArray[np.float64], scores: Float, kept: Sequence[int]) -> list[list[int]]:
+    """For each kept proposal the best of the others that overlap it most among the kept. overlap: IoU of every two, (n,
+    n)."""
     if not kept:
         return []
-    overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
-    nearest = overlap.argmax(axis=1)
-    order = np.argsort(-scores, kind="stable")
-    near_enough = overlap.max(axis=1) >= ALTERNATIVE_IOU
-    return [
-        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][:ALTERNATIVES]
-        for place, index in enumerate(kept)
-    ]
+    with_kept = overlap[:, kept]
+    nearest = with_kept.argmax(axis=1).tolist()
+    near_enough = (with_kept.max(axis=1) >= ALTERNATIVE_IOU).tolist()
+    others: list[list[int]] = [[] for _ in kept]
+    for index in np.argsort(-scores, kind="stable").tolist():
+        place = nearest[index]
+        if near_enough[index] and index != kept[place] and len(others[place]) < ALTERNATIVES:
+            others[place].append(index)
+    return others
 
 
 def _region(
@@ -165,17 +167,18 @@ class ClassicalSelector:
         """loops: None for NumPy's and OpenCV's."""
         self._loops = loops or Loops()
         self._scorer = Scorer(parts.glance, parts.regions, parts.bank, self._loops)
-        self._pairs = parts.pairs
+        self._pairs = FlatTrees.of(parts.pairs)
 
     def process(self, colour: ColourMap) -> Candidates:
         """Score the regions of one frame. A frame without contrast gives no candidates."""
-        proposals, scores = self._scorer.process(Scene.of(colour, self._loops))
-        kept, items = scored_candidates(colour, proposals, scores)
-        height, width = colour.picture.shape[:2]
-        together = score_pairs(self._pairs, items, (width, height), None)
+        scene = Scene.of(colour, self._loops)
+        proposals, scores = self._scorer.process(scene)
+        overlap = pairwise_iou(proposals.boxes, proposals.boxes)
+        kept, items = scored_candidates(colour, proposals, scores, overlap)
+        together = scored_pairs(lambda rows: self._pairs.scores(rows, self._loops.walk), items, scene.size, None)
         regions = tuple(
             _region(colour, proposals, index, float(scores[index]), extents)
-            for index, extents in zip(kept, other_extents(proposals, scores, kept), strict=True)
+            for index, extents in zip(kept, other_extents(overlap, scores, kept), strict=True)
         )
         return Candidates(regions, together, colour.source_size)
 

@@ -190,16 +190,13 @@ def walk(
     roots: Array, feature: Array, threshold: Array, children: Array, leaf: Array, depth: int, rows: Array
 ) -> Array:
     """See `trees.Walk`, with the fields of the trees one by one."""
+    # Row by row within a tree: the steps of several rows are under way at once, and none waits for a leaf.
     found = np.zeros(len(rows), np.int64)
-    for row in range(len(rows)):
-        total = 0
-        for tree in range(len(roots)):
-            node = roots[tree]
+    for tree in range(len(roots)):
+        root = roots[tree]
+        for row in range(len(rows)):
+            node = root
             for _ in range(depth):
-                below = children[2 * node + (rows[row, feature[node]] > threshold[node])]
-                if below == node:
-                    break
-                node = below
-            total += np.int64(leaf[node])
-        found[row] = total
+                node = children[2 * node + np.int64(rows[row, feature[node]] > threshold[node])]
+            found[row] += leaf[node]
     return found

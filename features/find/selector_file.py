@@ -42,8 +42,8 @@ class SelectorError(ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassicalParts:
-    """glance: predicts the IoU that a region has with a hand, with or without its forearm, by its cells alone. regions: the
-    IoU of a region that stood out. pairs: of a pair, the lower of both. bank: outlines of hands."""
+    """glance: predicts the IoU that a region has with a hand, with or without its forearm, by its cells alone. regions:
+    the IoU of a region that stood out. pairs: of a pair, the lower of both. bank: outlines of hands."""
 
     glance: Trees
     regions: Trees

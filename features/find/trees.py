@@ -76,8 +76,8 @@ Walk = Callable[["FlatTrees", NDArray[np.float32]], NDArray[np.int64]]
 class FlatTrees:
     """Trees made ready to be walked. All nodes of all trees stand in a row.
 
-    roots: intp (trees,), where each tree begins. feature: intp, threshold: float32, leaf: int32, a node each; leaves are
-    whole steps, so that their sum is the same in any order. children: intp, two a node, left and right.
+    roots: intp (trees,), where each tree begins. feature: intp, threshold: float32, leaf: int32, a node each; leaves
+    are whole steps, so that their sum is the same in any order. children: intp, two a node, left and right.
     """
 
     roots: NDArray[np.intp]

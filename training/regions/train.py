@@ -129,8 +129,8 @@ def train_classical(
     without: LeftOut | None = None,
     progress: Progress = lambda _: None,
 ) -> None:
-    """Fit the classical trees alone; all else of the file is that of `start`, byte for byte, and the card is its card with
-    a word of this. A few minutes once the pictures are composed, which lie in a folder beside `out`.
+    """Fit the classical trees alone; all else of the file is that of `start`, byte for byte, and the card is its card
+    with a word of this. A few minutes once the pictures are composed, which lie in a folder beside `out`.
 
     Raises InputError, SelectorError, UsageError.
     """

@@ -192,8 +192,8 @@ def fit_regions(
 def fit_pairs(
     pictures: Iterable[BoxedPicture], first: Trees, second: Trees, bank: Bank, loops: Loops, seed: int
 ) -> ClassicalParts:
-    """All parts, with trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than those
-    that the other trees were fitted on, whose scores would be too good; every hand in them must have its box."""
+    """All parts, with trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than
+    those that the other trees were fitted on, whose scores would be too good; every hand in them must have its box."""
     stage = ColourStage()
     scorer = Scorer(first, second, bank, loops)
     rows, targets = [np.zeros((0, PAIR_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
@@ -201,7 +201,8 @@ def fit_pairs(
         colour = stage.process(picture.image)
         scene = Scene.of(colour, loops)
         regions, scores = scorer.process(scene)
-        kept, items = scored_candidates(colour, regions, scores)
+        overlap = pairwise_iou(regions.boxes, regions.boxes)
+        kept, items = scored_candidates(colour, regions, scores, overlap)
         pairs, numbers = pair_numbers(items, scene.size, None)
         rows.append(numbers)
         targets.append(_lower_of_both(overlaps_with(picture, colour, regions)[kept], pairs))

@@ -37,11 +37,11 @@ LARGEST_ASPECT: Final = 3.5
 """Longer over shorter side of the box."""
 SAME_HUNDREDTHS: Final = 88
 """Boxes whose IoU is more than this, in hundredths, are one proposal."""
-MOST: Final = 160
+MOST: Final = 96
 """Regions kept for the later stages, so that a picture of specks costs a bounded time."""
-MOST_LOOKED_AT: Final = 256
+MOST_LOOKED_AT: Final = 192
 """Regions compared with one another for near-equal ones, of which those of the highest levels count."""
-MOST_OUTLINES: Final = 2000
+MOST_OUTLINES: Final = 1200
 """Outlines, specks included, after which no lower level is looked at: a picture of noise has thousands at each."""
 WRIST_DISTANCE: Final = 1.2
 """Of the wrist from the palm's centre along the arm, palm radii."""

@@ -1,6 +1,7 @@
 """Trees at run time against the library that fitted them; damaged files are refused in one line."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from lightgesture.features.find.selector_file import (
     load_learned,
 )
 from lightgesture.features.find.trees import FlatTrees, Trees, evaluate
-from lightgesture.training.model_files import write_selector
+from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.regions.trees import export_trees
 
 
@@ -59,6 +60,17 @@ def test_a_selector_survives_its_file(tmp_path):
         for node in mine.weights:
             np.testing.assert_array_equal(mine.weights[node].weights, theirs.weights[node].weights)
     assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
+
+
+def test_other_classical_trees_leave_the_learned_choice_as_it_was(tmp_path):
+    classical = load_classical()
+    write_classical(replace(classical, pairs=replace(classical.pairs, base=0.25)), BUNDLED, tmp_path / "new.npz")
+    assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
+    (header, before), (same, after) = read_archive(BUNDLED), read_archive(tmp_path / "new.npz")
+    assert header == same
+    assert before.keys() == after.keys()
+    for name in before:
+        assert name == "extent_pairs_base" or before[name].tobytes() == after[name].tobytes(), name
 
 
 def _header(**changes):

@@ -175,7 +175,9 @@ class ClassicalSelector:
         proposals, scores = self._scorer.process(scene)
         overlap = pairwise_iou(proposals.boxes, proposals.boxes)
         kept, items = scored_candidates(colour, proposals, scores, overlap)
-        together = scored_pairs(lambda rows: self._pairs.scores(rows, self._loops.walk), items, scene.size, None)
+        together = scored_pairs(
+            lambda rows: self._pairs.scores(rows, self._loops.walk), items, scene.size, None
+        )
         regions = tuple(
             _region(colour, proposals, index, float(scores[index]), extents)
             for index, extents in zip(kept, other_extents(overlap, scores, kept), strict=True)

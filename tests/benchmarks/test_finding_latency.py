@@ -96,7 +96,9 @@ def test_compiled_and_plain_loops_find_the_same(frames):
 
 
 def test_a_row_for_each_clip_and_engine(monkeypatch, frames):
-    monkeypatch.setattr(finding_latency, "engines", lambda: [Engine("learned"), Engine("classical", is_plain=True)])
+    monkeypatch.setattr(
+        finding_latency, "engines", lambda: [Engine("learned"), Engine("classical", is_plain=True)]
+    )
     table = finding_times({"a": frames[:2], "b": frames[:2]}, 1)
     names = [(row["clip"], row["selector"]) for row in table.to_dicts()]
     changes = [first for first, second in pairwise([*names, None]) if first != second]

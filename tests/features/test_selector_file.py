@@ -64,7 +64,9 @@ def test_a_selector_survives_its_file(tmp_path):
 
 def test_other_classical_trees_leave_the_learned_choice_as_it_was(tmp_path):
     classical = load_classical()
-    write_classical(replace(classical, pairs=replace(classical.pairs, base=0.25)), BUNDLED, tmp_path / "new.npz")
+    write_classical(
+        replace(classical, pairs=replace(classical.pairs, base=0.25)), BUNDLED, tmp_path / "new.npz"
+    )
     assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
     (header, before), (same, after) = read_archive(BUNDLED), read_archive(tmp_path / "new.npz")
     assert header == same

@@ -135,15 +135,22 @@ def export_trees(model: object) -> Trees:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Glanced:
-    """A picture as the first look sees it. overlaps: float32 (n,), IoU of each region with the best hand, with its
-    forearm or without it, whichever is more."""
+    """A picture as the first look sees it, and the rows of its regions."""
 
     picture: BoxedPicture
     colour: ColourMap
     scene: Scene
     regions: Proposals
     rows: Float
-    overlaps: Float
+
+    def overlaps(self) -> Float:
+        """float32 (n,): IoU of each region with the best hand, with its forearm or without it, whichever is more."""
+        found = overlaps_with(self.picture, self.colour, self.regions)
+        for number in range(len(self.regions)) if self.picture.boxes else ():
+            hand = without_forearms(self.regions, [number])
+            if len(hand):
+                found[number] = max(found[number], overlaps_with(self.picture, self.colour, hand)[0])
+        return found
 
 
 def glance(pictures: Iterable[BoxedPicture], loops: Loops) -> Iterable[Glanced]:
@@ -153,16 +160,9 @@ def glance(pictures: Iterable[BoxedPicture], loops: Loops) -> Iterable[Glanced]:
         colour = stage.process(picture.image)
         scene = Scene.of(colour, loops)
         regions = whole_regions(scene.skin, distinct=loops.distinct)
-        if not len(regions):
-            continue
-        overlaps = overlaps_with(picture, colour, regions)
-        for number in range(len(regions)) if picture.boxes else ():
-            hand = without_forearms(regions, [number])
-            if len(hand):
-                overlaps[number] = max(overlaps[number], overlaps_with(picture, colour, hand)[0])
-        yield Glanced(
-            picture, colour, scene, regions, cells.describe(scene.sums, regions, scene.size), overlaps
-        )
+        if len(regions):
+            rows = cells.describe(scene.sums, regions, scene.size, loops.cells)
+            yield Glanced(picture, colour, scene, regions, rows)
 
 
 def fit_regions(
@@ -175,9 +175,10 @@ def fit_regions(
     rng = np.random.default_rng(seed)
     rows, targets = [np.zeros((0, cells.COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for one in glance(pictures(), loops):
-        kept = (one.overlaps > MIDDLING_IOU) | (rng.random(len(one.overlaps)) < KEPT_SHARE)
+        overlaps = one.overlaps()
+        kept = (overlaps > MIDDLING_IOU) | (rng.random(len(overlaps)) < KEPT_SHARE)
         rows.append(one.rows[kept])
-        targets.append(one.overlaps[kept])
+        targets.append(overlaps[kept])
     first = fit_trees(rows, targets, GLANCE_TREES, seed)
     flat = FlatTrees.of(first)
     rows, targets = [np.zeros((0, REGION_COLUMNS), np.float32)], [np.zeros(0, np.float32)]

@@ -49,15 +49,18 @@ def best_loops() -> Loops:
         return Loops()
     except Exception as error:
         return _plain(f"numba cannot be loaded ({_line(error)})")
+    folder = cache_folder()
     try:
-        return compiled_loops(numba, cache_folder())
+        return compiled_loops(numba, folder)
+    except OSError as error:
+        return _plain(f"{folder}: cannot be written ({error.strerror}), where numba would keep what it compiles")
     except Exception as error:
         # Numba raises what it likes where a version, a processor or a kept file does not suit it.
         return _plain(f"numba {getattr(numba, '__version__', '')} does not serve ({_line(error)})")
 
 
 def _plain(reason: str) -> Loops:
-    logging.getLogger("lightgesture").warning("%s: slower loops with the same answers are used", reason)
+    logging.getLogger("lightgesture").warning("%s; slower loops with the same answers are used", reason)
     return Loops()
 
 

@@ -139,7 +139,7 @@ def _plain_cells(sums: Sums, boxes: NDArray[np.int32]) -> Float:
     found[:, 1] = skin / np.float64(255 * PART)
     strength = gradients[0].sum(axis=1) + count * GRADIENT_FLOOR
     found[:, 2:] = ((count * gradients) / strength[:, None].astype(np.float64)).transpose(1, 0, 2)
-    return found.reshape(len(boxes), -1)
+    return found.reshape(len(boxes), (3 + DIRECTIONS) * count)
 
 
 PLAIN: Final = CellLoops(_plain_sums, _plain_cells)

@@ -53,7 +53,9 @@ def best_loops() -> Loops:
     try:
         return compiled_loops(numba, folder)
     except OSError as error:
-        return _plain(f"{folder}: cannot be written ({error.strerror}), where numba would keep what it compiles")
+        return _plain(
+            f"{folder}: cannot be written ({error.strerror}), where numba would keep what it compiles"
+        )
     except Exception as error:
         # Numba raises what it likes where a version, a processor or a kept file does not suit it.
         return _plain(f"numba {getattr(numba, '__version__', '')} does not serve ({_line(error)})")

@@ -27,7 +27,7 @@ hand."""
 DIRECTIONS: Final = 4
 """Gradient directions over half a turn."""
 SHAPE_NUMBERS: Final = 9
-"""Place, size, outline and level of a region."""
+"""Place, size and outline of a region."""
 COLUMNS: Final = (3 + DIRECTIONS) * CELLS**2 + SHAPE_NUMBERS
 """Numbers of one region."""
 PART: Final = 16
@@ -78,9 +78,10 @@ def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellL
 
 
 def _shapes(regions: Proposals, size: tuple[int, int]) -> Float:
-    """float32 (n, 9): place, size, outline and level of each region, free of the picture's resolution."""
+    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution."""
     x, y, width, height = regions.boxes.T.astype(np.float64)
     area = np.array([cv2.contourArea(contour) for contour in regions.contours])
+    hull = np.array([cv2.contourArea(cv2.convexHull(contour)) for contour in regions.contours])
     length = np.array([len(contour) for contour in regions.contours])
     rows = np.empty((len(regions), SHAPE_NUMBERS), np.float32)
     rows[:, 0] = (x + width / 2) / size[0]
@@ -89,9 +90,9 @@ def _shapes(regions: Proposals, size: tuple[int, int]) -> Float:
     rows[:, 3] = height / min(size)
     rows[:, 4] = width / height
     rows[:, 5] = area / (width * height)
-    rows[:, 6] = length / np.sqrt(np.maximum(area, 1.0))
-    rows[:, 7] = regions.cut
-    rows[:, 8] = regions.levels
+    rows[:, 6] = area / np.maximum(hull, 1.0)
+    rows[:, 7] = length / np.sqrt(np.maximum(area, 1.0))
+    rows[:, 8] = regions.cut
     return rows
 
 

@@ -91,8 +91,12 @@ def sums(luma: Array, skin: Array, dx: Array, dy: Array) -> Array:
     height, width = luma.shape
     found = np.zeros((2 + DIRECTIONS, height + 1, width + 1), np.int32)
     for y in range(height):
-        lumas, skins = 0, 0
-        first, second, third, fourth = 0, 0, 0, 0
+        lumas: Array = 0
+        skins: Array = 0
+        first: Array = 0
+        second: Array = 0
+        third: Array = 0
+        fourth: Array = 0
         for x in range(width):
             lumas += np.int64(luma[y, x])
             skins += np.int64(skin[y, x])

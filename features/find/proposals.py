@@ -105,7 +105,7 @@ def _contours_at(skin: Image, threshold: int) -> tuple[list[Contour], list[Box],
         box = cv2.boundingRect(contour)
         short, long = (box[2], box[3]) if box[2] < box[3] else (box[3], box[2])
         if low <= short and long <= high and long <= LARGEST_ASPECT * short:
-            found.append(contour.reshape(-1, 2))
+            found.append(np.asarray(contour, np.int32).reshape(-1, 2))
             boxes.append((box[0], box[1], box[2], box[3]))
     return found, boxes, len(contours)
 

@@ -111,4 +111,4 @@ def plain_walk(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]
     for _ in range(trees.depth):
         goes_right = values.take(row + trees.feature.take(node)) > trees.threshold.take(node)
         node = trees.children.take(2 * node + goes_right)
-    return trees.leaf.take(node).sum(axis=1, dtype=np.int64)
+    return np.asarray(trees.leaf.take(node).sum(axis=1, dtype=np.int64), np.int64)

@@ -5,7 +5,7 @@ Measurements in Taxonomic Problems", 1936) of the pixels in the middle of the pa
 direction of colour in which this hand differs from this room or water; Otsu's threshold cuts along it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lightgesture.features.types import Contour, Float
 
 Mask = NDArray[np.uint8]
-Moments = Mapping[str, float]
+Moments = dict[str, float]
 """What `cv2.moments` gives."""
 
 

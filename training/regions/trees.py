@@ -78,7 +78,7 @@ def overlaps_with(picture: BoxedPicture, colour: ColourMap, regions: Proposals) 
         return np.zeros(len(regions), np.float32)
     scale = np.array([*colour.scale, *colour.scale])
     boxes = np.array(picture.boxes, np.float64)
-    return pairwise_iou(regions.boxes * scale, boxes).max(axis=1).astype(np.float32)
+    return np.asarray(pairwise_iou(regions.boxes * scale, boxes).max(axis=1), np.float32)
 
 
 def fit_trees(rows: Sequence[Float], targets: Sequence[Float], settings: TreeSettings, seed: int) -> Trees:

@@ -35,7 +35,7 @@ def _pictures():
 
 def test_a_region_with_its_forearm_counts_as_the_hand_that_it_holds(pictures):
     one = next(iter(glance(pictures, Loops())))
-    tall = one.regions.boxes[:, 3] > 60
+    tall = one.regions.boxes[:, 3] > 30
     assert one.rows.shape[0] == len(one.regions)
     assert one.overlaps()[tall].max() > 0.6
 

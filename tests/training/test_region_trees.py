@@ -40,6 +40,7 @@ def test_a_region_with_its_forearm_counts_as_the_hand_that_it_holds(pictures):
     assert one.overlaps()[tall].max() > 0.6
 
 
+@pytest.mark.slow
 def test_fitted_trees_find_the_drawn_hands(pictures):
     bank = load_classical().bank
     first, second = fit_regions(lambda: pictures, bank, Loops(), 0)

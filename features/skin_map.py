@@ -1,10 +1,13 @@
 """The default skin map: red compensation, gray-world, an opponent colour and a stretch, in a quarter millisecond.
 
-`reference_skin_map` says what is computed, step by step; `skin_map` computes it through tables and whole-picture
-operations of OpenCV, and a test holds the two together.
+`reference_skin_map` says what is computed, step by step; `skin_map` computes it in whole numbers through tables, and a
+test holds the two together. Whole numbers add up to the same in any order, so that what loops over pixels may be
+NumPy's and OpenCV's (`PLAIN`) or compiled (`features/compiled.py`), and every picture gets the same bytes.
 """
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -23,13 +26,19 @@ LOW_PERCENTILE: Final = 20.0
 """Percent of pixels below the range that the levels share."""
 HIGH_PERCENTILE: Final = 99.8
 """Percent of pixels up to its end; a smaller one lets a large red object use up the range."""
-BINS: Final = 2048
-"""Of the histogram from which the fast version reads the percentiles; both versions then differ by a level, by two in
-pictures with a few glowing pixels."""
+BINS: Final = 4096
+"""Most bins of the histogram from which the fast version reads the percentiles; both versions then differ by a level,
+by two in pictures with a few glowing pixels."""
+FINE: Final = 256
+"""Steps of a level of the compensated red."""
+SHARE_BITS: Final = 14
+"""Of the fraction of what is given back of it."""
+RED_ENTRIES: Final = 4096
+"""Of the table of the red's powers."""
+UNIT: Final = 32767
+"""Stands for a redness of 1; the redness lies between -1 and 1, and UNIT more than that times UNIT fits 16 bits."""
 DARKEST_LIGHT: Final = 1e-3
 """An estimate of the light below this counts as this, so that a black channel is not divided by zero."""
-
-_LEVELS = np.arange(256, dtype=np.float32) / np.float32(255)
 
 FLAT: Final = 1e-4
 """A map whose percentiles lie closer together than this holds nothing but noise and is given as zeros."""
@@ -80,68 +89,111 @@ def reference_skin_map(picture: Image) -> Image:
     return stretch(np.asarray(cv2.GaussianBlur(opponent, (3, 3), 0), np.float32))
 
 
-def skin_map(picture: Image) -> Image:
-    """Skin map of a BGR picture, uint8 (h, w, 3) -> uint8 (h, w), 0 least to 255 most skin-like."""
-    opponent = cv2.GaussianBlur(_fast_redness(picture), (3, 3), 0)
-    return _fast_stretch(np.asarray(opponent, np.float32))
+@dataclass(frozen=True, slots=True)
+class SkinLoops:
+    """The passes over the pixels of a picture, uint8 (h, w, 3), BGR.
 
-
-def _fast_redness(picture: Image) -> Float:
-    """`redness` of the balanced picture, float32 (h, w).
-
-    Balancing scales a channel and the power follows it, so blue and green are one table of 256 entries each. The
-    compensated red is no function of red alone: it is computed as it stands.
+    red: (picture, share) -> uint16 (h, w), the compensated red in steps of 1 / FINE: red + share (255 - red) green
+        / 2^SHARE_BITS.
+    redness: (picture, red, shift, blue table, green table, red table) -> uint16 (h, w): what the three tables, float32
+        and whole numbers, add up to at a pixel's blue, green and red / 2^shift, blurred by 1-2-1 along x and y.
+    counts: (values, lowest, highest, shift) -> int64 (bins,): how many of uint16 (h, w) lie in each bin, whose number
+        is (value - lowest) / 2^shift.
+    look_up: (values, lowest, shift, levels) -> uint8 (h, w): of each value what levels, uint8 (bins,), has for its bin.
     """
-    blue, green, red = cv2.split(picture)
-    mean_blue, mean_green, mean_red = (mean / 255.0 for mean in cv2.mean(picture)[:3])
-    share = RED_COMPENSATION * max(mean_green - mean_red, 0.0)
-    compensated = cv2.multiply(cv2.bitwise_not(red), green, scale=share / 255.0**2, dtype=cv2.CV_32F)
-    compensated = cv2.addWeighted(red, 1 / 255.0, compensated, 1.0, 0.0, dtype=cv2.CV_32F)
-    light = np.array([mean_blue, mean_green, cv2.mean(compensated)[0]])
+
+    red: Callable[[Image, int], NDArray[np.uint16]]
+    redness: Callable[[Image, NDArray[np.uint16], int, Float, Float, Float], NDArray[np.uint16]]
+    counts: Callable[[NDArray[np.uint16], int, int, int], NDArray[np.int64]]
+    look_up: Callable[[NDArray[np.uint16], int, int, NDArray[np.uint8]], Image]
+
+
+def skin_map(picture: Image, loops: SkinLoops | None = None) -> Image:
+    """Skin map of a BGR picture, uint8 (h, w, 3) -> uint8 (h, w), 0 least to 255 most skin-like.
+
+    loops: what passes over the pixels, None for `PLAIN`; any gives the same map.
+    """
+    loops = loops or PLAIN
+    pixels = picture.shape[0] * picture.shape[1]
+    blue, green, red = (total / (255.0 * pixels) for total in cv2.sumElems(picture)[:3])
+    share = RED_COMPENSATION * max(green - red, 0.0)
+    compensated = loops.red(picture, round(share * FINE / 255.0 * (1 << SHARE_BITS)))
+    light = np.array([blue, green, int(compensated.sum()) / (FINE * 255.0 * pixels)])
     gains = light.mean() / np.maximum(light, DARKEST_LIGHT)
-    tables = _power_tables(gains[:2])
-    cool = cv2.add(cv2.LUT(blue, tables[0]), cv2.LUT(green, tables[1]))
-    clipped = cv2.threshold(compensated, 1.0 / max(gains[2], DARKEST_LIGHT), 0, cv2.THRESH_TRUNC)[1]
-    warm = cv2.pow(clipped, EXPONENT)
-    return np.asarray(cv2.scaleAdd(warm, gains[2] ** EXPONENT, cool), np.float32)
+    shift = max(int(compensated.max()).bit_length() - (RED_ENTRIES - 1).bit_length(), 0)
+    blurred = loops.redness(picture, compensated, shift, *_power_tables(gains, shift))
+    return _fast_stretch(blurred, loops)
 
 
-def _power_tables(gains: NDArray[np.float64]) -> Float:
-    """float32 (2, 256): what each value of blue and of green adds to the redness."""
-    values = np.minimum(_LEVELS * gains[:, None].astype(np.float32), 1.0) ** np.float32(EXPONENT)
-    weights = np.array([[-YELLOW_WEIGHT], [YELLOW_WEIGHT - 1.0]], np.float32)
-    return np.asarray(values * weights, np.float32)
+def _plain_red(picture: Image, share: int) -> NDArray[np.uint16]:
+    _, green, red = cv2.split(picture)
+    given_back = np.multiply(cv2.bitwise_not(red), green, dtype=np.int32)
+    given_back *= share
+    given_back >>= SHARE_BITS
+    given_back += np.multiply(red, FINE, dtype=np.int32)
+    return given_back.astype(np.uint16)
 
 
-def _fast_stretch(values: Float) -> Image:
-    """`stretch` with percentiles from a histogram."""
-    low, high = histogram_percentiles(values, (LOW_PERCENTILE, HIGH_PERCENTILE), BINS)
-    if high - low < FLAT:
-        return np.zeros(values.shape, np.uint8)
-    scale = 255.0 / (high - low)
-    # The conversion rounds and the reference cuts off: half a level less makes both the same.
-    levels = cv2.addWeighted(values, scale, values, 0.0, -low * scale - 0.5, dtype=cv2.CV_8U)
-    return np.asarray(levels, np.uint8)
+def _plain_redness(
+    picture: Image, red: NDArray[np.uint16], shift: int, blues: Float, greens: Float, reds: Float
+) -> NDArray[np.uint16]:
+    # Single precision holds these whole numbers and the sixteenths that the blur makes of them exactly.
+    blue, green, _ = cv2.split(picture)
+    total = reds.take(red >> shift)
+    cv2.add(total, cv2.LUT(blue, blues), dst=total)
+    cv2.add(total, cv2.LUT(green, greens), dst=total)
+    return np.asarray(cv2.GaussianBlur(total, (3, 3), 0)).astype(np.uint16)
 
 
-def histogram_percentiles(values: Float, percents: tuple[float, float], bins: int) -> tuple[float, float]:
-    """Two percentiles of an array of finite values from a histogram of `bins` bins over its range.
+def _plain_counts(values: NDArray[np.uint16], lowest: int, highest: int, shift: int) -> NDArray[np.int64]:
+    places = (values - np.uint16(lowest)) >> shift
+    return np.bincount(places.ravel(), minlength=((highest - lowest) >> shift) + 1)
 
-    Exact to a bin.
+
+def _plain_look_up(values: NDArray[np.uint16], lowest: int, shift: int, levels: NDArray[np.uint8]) -> Image:
+    return levels.take((values - np.uint16(lowest)) >> shift)
+
+
+PLAIN: Final = SkinLoops(_plain_red, _plain_redness, _plain_counts, _plain_look_up)
+_POWERS = np.arange(RED_ENTRIES, dtype=np.float64) ** EXPONENT
+
+
+def _power_tables(gains: NDArray[np.float64], shift: int) -> tuple[Float, Float, Float]:
+    """What each value of blue, green and red adds to the redness, float32 with whole numbers.
+
+    Balancing scales a channel and the power follows it, so that every table is the same one, scaled and clipped.
     """
-    lowest, highest, _, _ = cv2.minMaxLoc(values)
-    if highest <= lowest:
-        return lowest, lowest
-    scale = bins / (highest - lowest)
-    # The conversion rounds, so bin k holds what lies within half a bin of lowest + k / scale.
-    places = cv2.addWeighted(values, scale, values, 0.0, -lowest * scale, dtype=cv2.CV_16U)
-    below = np.bincount(np.asarray(places).ravel()).cumsum()
-    low, high = (_order_statistic(below, percent / 100.0 * (values.size - 1)) for percent in percents)
-    return max(lowest + low / scale, lowest), min(lowest + high / scale, highest)
+    steps = 255.0, 255.0, 255.0 * FINE / (1 << shift)
+    factors = [(gain / step) ** EXPONENT for gain, step in zip(gains.tolist(), steps, strict=True)]
+    weights = -YELLOW_WEIGHT, YELLOW_WEIGHT - 1.0, 1.0
+    middle = UNIT, 0, 0
+    tables = [
+        np.rint(np.minimum(_POWERS[:entries] * factor, 1.0) * (weight * UNIT)) + offset
+        for entries, factor, weight, offset in zip(
+            (256, 256, RED_ENTRIES), factors, weights, middle, strict=True
+        )
+    ]
+    blue, green, red = (table.astype(np.float32) for table in tables)
+    return blue, green, red
+
+
+def _fast_stretch(values: NDArray[np.uint16], loops: SkinLoops) -> Image:
+    """`stretch` of a redness in units of 1 / UNIT, with percentiles from a histogram."""
+    lowest, highest = (int(end) for end in cv2.minMaxLoc(values)[:2])
+    shift = max((highest - lowest).bit_length() - (BINS - 1).bit_length(), 0)
+    below = loops.counts(values, lowest, highest, shift).cumsum()
+    low, high = (
+        _order_statistic(below, percent / 100.0 * (values.size - 1))
+        for percent in (LOW_PERCENTILE, HIGH_PERCENTILE)
+    )
+    if (high - low) * (1 << shift) < FLAT * UNIT:
+        return np.zeros(values.shape, np.uint8)
+    levels = (np.arange(len(below)) - low) * (255.0 / (high - low))
+    return loops.look_up(values, lowest, shift, levels.clip(0.0, 255.0).astype(np.uint8))
 
 
 def _order_statistic(below: NDArray[np.intp], rank: float) -> float:
-    """The value of a rank from 0, in bins from the middle of the first, given the cumulated counts.
+    """The value of a rank from 0, in bins, given the cumulated counts; a bin's values stand at its middle.
 
     Between two whole ranks their values are interpolated, as they may lie many bins apart in a thin tail. Values
     of one bin are taken to be spread evenly over it.

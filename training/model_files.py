@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.archive import HEADER
+from lightgesture.features.archive import HEADER, read_archive
 from lightgesture.features.find import selector_file
 from lightgesture.features.find.bank import Bank
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
@@ -57,15 +57,29 @@ def write_svm_model(model: SvmModel, path: Path) -> None:
 def write_selector(classical: ClassicalParts, learned: LearnedParts, path: Path) -> None:
     """Write the selector's file, which serves either choice. Raises UsageError where the place cannot be written."""
     arrays = {
-        **_tree_arrays("regions", classical.regions),
-        **_tree_arrays("region_pairs", classical.pairs),
-        **bank_arrays("bank", classical.bank),
+        **_classical_arrays(classical),
         **_tree_arrays("places", learned.places),
         **_tree_arrays("place_pairs", learned.pairs),
         **network_arrays("locator", learned.locator),
         **network_arrays("refiner", learned.refiner),
     }
     _write(path, {"format": selector_file.FORMAT, "kind": selector_file.KIND}, arrays)
+
+
+def write_classical(classical: ClassicalParts, origin: Path, path: Path) -> None:
+    """Write a selector's file in which the learned choice is that of the file `origin`, byte for byte. Raises
+    ArchiveError, UsageError."""
+    header, arrays = read_archive(origin, lambda name: name.startswith(selector_file.LEARNED_PARTS))
+    _write(path, header, {**_classical_arrays(classical), **arrays})
+
+
+def _classical_arrays(classical: ClassicalParts) -> dict[str, NDArray[Any]]:
+    return {
+        **_tree_arrays("glance", classical.glance),
+        **_tree_arrays("extents", classical.regions),
+        **_tree_arrays("extent_pairs", classical.pairs),
+        **bank_arrays("bank", classical.bank),
+    }
 
 
 def write_json(content: Mapping[str, Any], path: Path) -> None:

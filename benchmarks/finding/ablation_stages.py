@@ -16,8 +16,8 @@ from lightgesture.benchmarks.methods import Decoded, Image, Method
 from lightgesture.benchmarks.scorer import Reading
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.bank import bank_distances, hand_proximity
-from lightgesture.features.find.candidates import APART_IOU, best_distinct, score_pairs
-from lightgesture.features.find.classical import describe_regions, other_extents, scored_candidates
+from lightgesture.features.find.candidates import APART_IOU, best_distinct, scored_pairs
+from lightgesture.features.find.classical import Loops, Scene, Scorer, other_extents, scored_candidates
 from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
 from lightgesture.features.find.proposals import LEVELS, Proposals, propose
 from lightgesture.features.find.selector import SelectorName, load_selector
@@ -28,7 +28,7 @@ from lightgesture.features.find.selector_file import (
     load_learned,
 )
 from lightgesture.features.find.settings import CLASSICAL, LEARNED, SelectorSettings
-from lightgesture.features.find.trees import evaluate
+from lightgesture.features.find.trees import FlatTrees
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
 from lightgesture.features.net.runner import logistic
 from lightgesture.features.skin_map import redness, stretch
@@ -37,8 +37,8 @@ from lightgesture.hands import Finder
 
 Float = NDArray[np.float32]
 Search = Callable[[ColourMap], Candidates]
-Score = Callable[[ColourMap, Proposals], Float]
-"""Scores of the regions of a frame, float32 (n,), 0 to 1."""
+Score = Callable[[ColourMap], tuple[Proposals, Float]]
+"""The regions of a frame and their scores, float32 (n,), 0 to 1."""
 
 ONE_THRESHOLD = 2
 """Two levels are one threshold, in the middle of the range."""
@@ -96,27 +96,24 @@ def without_pairs(settings: SelectorSettings) -> Callable[[Candidates], Candidat
 
 @dataclass(frozen=True, slots=True)
 class ClassicalSearch:
-    """The classical choice with other scores. levels: of its regions. has_trees: whether trees choose the pair."""
+    """The classical choice with other scores. has_trees: whether trees choose the pair."""
 
     parts: ClassicalParts
     score: Score
-    levels: int = LEVELS
     has_trees: bool = True
 
     def __call__(self, colour: ColourMap) -> Candidates:
-        proposals = propose(colour, self.levels)
-        if not len(proposals):
-            return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
-        scores = self.score(colour, proposals)
-        kept, items = scored_candidates(colour, proposals, scores)
+        proposals, scores = self.score(colour)
+        overlap = pairwise_iou(proposals.boxes, proposals.boxes)
+        kept, items = scored_candidates(colour, proposals, scores, overlap)
         found = tuple(
             _region(colour, proposals.boxes[[index, *others]], float(scores[index]))
-            for index, others in zip(kept, other_extents(proposals, scores, kept), strict=True)
+            for index, others in zip(kept, other_extents(overlap, scores, kept), strict=True)
         )
         height, width = colour.picture.shape[:2]
         pairs = lower_of_both(found)
         if self.has_trees:
-            pairs = score_pairs(self.parts.pairs, items, (width, height), None)
+            pairs = scored_pairs(FlatTrees.of(self.parts.pairs).scores, items, (width, height), None)
         return Candidates(found, pairs, colour.source_size)
 
 
@@ -126,19 +123,27 @@ def _region(colour: ColourMap, boxes: NDArray[np.int32], score: float) -> HandRe
     return HandRegion(first, NO_OUTLINE, None, float(np.clip(score, 0.0, 1.0)), tuple(others))
 
 
-def tree_scores(parts: ClassicalParts) -> Score:
-    """The product's scores."""
-    return lambda colour, proposals: evaluate(parts.regions, describe_regions(colour, proposals, parts.bank))
+def tree_scores(parts: ClassicalParts, levels: int = LEVELS) -> Score:
+    """The product's scores, of regions at fewer levels."""
+    loops = Loops()
+    scorer = Scorer(parts.glance, parts.regions, parts.bank, loops)
+    return lambda colour: scorer.process(Scene.of(colour, loops), levels)
 
 
 def bank_scores(parts: ClassicalParts) -> Score:
     """How much nearer an outline is to the bank's hands than to other things, the paper's last step."""
-    return lambda _, proposals: hand_proximity(bank_distances(proposals.contours, parts.bank), parts.bank)
+
+    def score(colour: ColourMap) -> tuple[Proposals, Float]:
+        proposals = propose(colour)
+        return proposals, hand_proximity(bank_distances(proposals.contours, parts.bank), parts.bank)
+
+    return score
 
 
-def level_scores(_: ColourMap, proposals: Proposals) -> Float:
+def level_scores(colour: ColourMap) -> tuple[Proposals, Float]:
     """The redder the better: the threshold at which a region stands alone."""
-    return np.asarray(proposals.levels / np.float32(255.0), np.float32)
+    proposals = propose(colour)
+    return proposals, np.asarray(proposals.levels / np.float32(255.0), np.float32)
 
 
 class PlainColourStage(ColourStage):
@@ -212,8 +217,8 @@ def _learned_variants(parts: LearnedParts) -> list[Method]:
 
 
 def _classical_variants(parts: ClassicalParts) -> list[Method]:
-    whole, trees = selector_method("classical"), tree_scores(parts)
-    one = ClassicalSearch(parts, trees, ONE_THRESHOLD)
+    whole = selector_method("classical")
+    one = ClassicalSearch(parts, tree_scores(parts, ONE_THRESHOLD))
     bank = ClassicalSearch(parts, bank_scores(parts), has_trees=False)
     level = ClassicalSearch(parts, level_scores, has_trees=False)
     alone = ChangedStage("classical", change=without_pairs(CLASSICAL))

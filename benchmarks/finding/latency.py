@@ -17,7 +17,9 @@ from lightgesture.benchmarks.scorer import percentile
 from lightgesture.benchmarks.tables import Cell, Table
 from lightgesture.benchmarks.timing import PEAK_MEMORY, SIZE, WARM_UP, Image, limited_threads
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.find.selector import SelectorName, load_selector
+from lightgesture.features.find.classical import ClassicalSelector
+from lightgesture.features.find.selector import SELECTORS, SelectorName, load_selector
+from lightgesture.features.find.selector_file import load_classical
 from lightgesture.features.types import Box, Candidates
 from lightgesture.front_end import StageClock
 from lightgesture.hands import Finder
@@ -25,6 +27,8 @@ from lightgesture.sources import DEFAULT_FPS
 
 LITERT = "ai_edge_litert"
 """Module of the run-time; without it the nets run by NumPy."""
+NUMBA = "numba"
+"""Module of the compiler of the classical choice; without it NumPy loops."""
 
 STARTS: Final = 5
 """New processes whose start is timed."""
@@ -46,23 +50,31 @@ STARTS_NOTE = (
 
 @dataclass(frozen=True, slots=True)
 class Engine:
-    """A selector with what runs its nets. uses_litert: else NumPy, as where LiteRT has no wheel."""
+    """A selector with what runs its nets or its loops. is_plain: NumPy, as where there is no LiteRT or no numba."""
 
     selector: SelectorName
-    uses_litert: bool = True
+    is_plain: bool = False
 
     @property
     def name(self) -> str:
-        """Name of the run-time; empty for the choice without nets."""
-        if self.selector == "classical":
-            return ""
-        return "LiteRT" if self.uses_litert else "NumPy"
+        """Name of the run-time."""
+        quick = "numba" if self.selector == "classical" else "LiteRT"
+        return "NumPy" if self.is_plain else quick
+
+    @property
+    def hides(self) -> str:
+        """The module that is hidden from a process in which this one is timed, empty for none."""
+        return (NUMBA if self.selector == "classical" else LITERT) if self.is_plain else ""
 
 
 def engines() -> list[Engine]:
     """What can be timed here."""
-    known = [Engine("learned", False), Engine("classical")]
-    return [Engine("learned"), *known] if find_spec(LITERT) is not None else known
+    modules = {"learned": LITERT, "classical": NUMBA}
+    found = []
+    for selector in SELECTORS:
+        found += [Engine(selector)] if find_spec(modules[selector]) is not None else []
+        found.append(Engine(selector, is_plain=True))
+    return found
 
 
 @contextmanager
@@ -99,7 +111,9 @@ class WatchedRegions:
 
 def open_stage(engine: Engine) -> Finder:
     """The bundled selector with its run-time."""
-    if engine.uses_litert:
+    if engine == Engine("classical", is_plain=True):
+        return ClassicalSelector(load_classical())
+    if not engine.is_plain:
         return load_selector(engine.selector)
     with without_litert():
         return load_selector(engine.selector)
@@ -154,8 +168,8 @@ def finding_times(clips: Mapping[str, Sequence[Image]], rounds: int) -> Table:
 
 FRESH_START = """
 import json, sys, time
-if {hides}:
-    sys.modules["{litert}"] = None
+if "{hides}":
+    sys.modules["{hides}"] = None
 import cv2
 cv2.setNumThreads(1)
 import numpy
@@ -174,7 +188,7 @@ def fresh_start(engine: Engine) -> tuple[float, float | None]:
     """
     width, height = SIZE
     code = PEAK_MEMORY + FRESH_START.format(
-        hides=not engine.uses_litert, litert=LITERT, selector=engine.selector, width=width, height=height
+        hides=engine.hides, selector=engine.selector, width=width, height=height
     )
     start = time.time()
     command = [sys.executable, "-c", code]

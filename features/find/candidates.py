@@ -7,7 +7,8 @@ Of a pair: do they look like the two hands of one person? Two hands that sign ar
 other, stand apart, have one skin, and a face between them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import combinations
 from typing import Final
 
@@ -147,9 +148,16 @@ def pair_numbers(
 
 def score_pairs(trees: Trees, candidates: Rows, size: tuple[int, int], face: Point | None) -> Float:
     """float32 (n, n), symmetric, 0 to 1: how well each two candidates go together; 0 for those that overlap."""
+    return scored_pairs(partial(evaluate, trees), candidates, size, face)
+
+
+def scored_pairs(
+    score: Callable[[Float], Float], candidates: Rows, size: tuple[int, int], face: Point | None
+) -> Float:
+    """`score_pairs` by whatever scores rows of `pair_numbers`, float32 (pairs, PAIR_COLUMNS) -> (pairs,)."""
     together = np.zeros((len(candidates), len(candidates)), np.float32)
     pairs, rows = pair_numbers(candidates, size, face)
     if pairs:
         first, second = np.array(pairs).T
-        together[first, second] = evaluate(trees, rows).clip(0.0, 1.0)
+        together[first, second] = score(rows).clip(0.0, 1.0)
     return np.maximum(together, together.T)

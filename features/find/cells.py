@@ -1,100 +1,146 @@
-"""Numbers of a proposal for the scorer: what the picture looks like inside and around its box.
+"""Numbers of a region for the scorer: what the picture looks like inside and around its box.
 
 Seven channels (luma, skin, gradient magnitude and the gradient in four directions) are averaged over a grid of
 cells of the widened box through integral images, as in Dollár, Tu, Perona and Belongie, "Integral
 Channel Features", 2009: a box costs the same whatever its size.
+
+All is whole numbers up to the last division, so that a compiled loop (`features/compiled.py`) and NumPy (`PLAIN`) give
+the same bytes.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.colour import ColourMap
 from lightgesture.features.find.proposals import Proposals
-from lightgesture.features.types import Float
+from lightgesture.features.types import Float, Image
 
 CELLS: Final = 6
 """Along each side of the widened box."""
-CONTEXT: Final = 1.4
-"""Side of the widened box over the side of the region's own, so that the grid sees what stands around a hand."""
+CONTEXT_TENTHS: Final = 14
+"""Side of the widened box over the side of the region's own, in tenths, so that the grid sees what stands around a
+hand."""
 DIRECTIONS: Final = 4
 """Gradient directions over half a turn."""
 SHAPE_NUMBERS: Final = 9
 """Place, size and outline of a region."""
 COLUMNS: Final = (3 + DIRECTIONS) * CELLS**2 + SHAPE_NUMBERS
-"""Numbers of one proposal."""
+"""Numbers of one region."""
+PART: Final = 16
+"""Steps of a level in the mean of a cell."""
+LUMA_FLOOR: Final = 41
+"""Added to the deviation of luma over the cells, in steps: one hundredth of the range, below which it is noise."""
+GRADIENT_FLOOR: Final = 5
+"""Added to the mean gradient of the cells, in steps."""
+
+Sums = NDArray[np.int32]
+"""int32 (2 + DIRECTIONS, h + 1, w + 1): integral images of luma, skin and the gradient in each direction, of 8 bits."""
 
 
-def channels(colour: ColourMap) -> Float:
-    """float32 (7, h, w): luma and skin in 0 to 1, gradient magnitude, gradient in four directions."""
-    luma = cv2.cvtColor(colour.picture, cv2.COLOR_BGR2GRAY).astype(np.float32) / 255.0
-    # The square root lifts the dark end, where a back-lit hand differs from the wall by two grey levels.
-    luma = np.sqrt(luma)
-    dx = cv2.Sobel(luma, cv2.CV_32F, 1, 0, ksize=3)
-    dy = cv2.Sobel(luma, cv2.CV_32F, 0, 1, ksize=3)
-    magnitude = np.sqrt(dx * dx + dy * dy)
-    angle = np.arctan2(dy, dx)
-    direction = np.floor(angle * (DIRECTIONS / np.pi) + 0.5).astype(np.int32) % DIRECTIONS
-    directed = [np.where(direction == index, magnitude, 0.0) for index in range(DIRECTIONS)]
-    return np.stack([luma, colour.skin.astype(np.float32) / 255.0, magnitude, *directed]).astype(np.float32)
+@dataclass(frozen=True, slots=True)
+class CellLoops:
+    """The passes over pixels and over cells.
+
+    sums: (luma, skin, dx, dy), uint8 (h, w) twice and int16 (h, w) twice, -> `Sums`. cells: (sums, boxes), boxes int32
+        (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²).
+    """
+
+    sums: Callable[[Image, Image, NDArray[np.int16], NDArray[np.int16]], Sums]
+    cells: Callable[[Sums, NDArray[np.int32]], Float]
 
 
-def _cell_means(stack: Float, boxes: NDArray[np.int32]) -> Float:
-    """Mean of each channel in each cell: float32 (n, channels, cells, cells). Outside the picture counts
-    as not there: a cell's mean is over its visible part, 0 where there is none."""
-    height, width = stack.shape[1:]
-    integrals = np.zeros((stack.shape[0], height + 1, width + 1), np.float64)
-    for index, channel in enumerate(stack):
-        integrals[index] = cv2.integral(channel, sdepth=cv2.CV_64F)
-    steps = np.linspace(-0.5, 0.5, CELLS + 1) * CONTEXT
-    centre = boxes[:, :2] + boxes[:, 2:] / 2.0
-    columns = np.rint(centre[:, :1] + boxes[:, 2:3] * steps).astype(np.int64).clip(0, width)
-    rows = np.rint(centre[:, 1:] + boxes[:, 3:4] * steps).astype(np.int64).clip(0, height)
-    corners = integrals[:, rows[:, :, None], columns[:, None, :]].transpose(1, 0, 2, 3)
-    sums = np.diff(np.diff(corners, axis=2), axis=3)
-    areas = np.diff(rows, axis=1)[:, :, None] * np.diff(columns, axis=1)[:, None, :]
-    return np.asarray(sums / np.maximum(areas, 1)[:, None], np.float32)
+# The square root lifts the dark end, where a back-lit hand differs from the wall by two grey levels.
+_ROOTS: Final = np.rint(np.sqrt(np.arange(256) * 255.0)).astype(np.uint8)
 
 
-def _shapes(proposals: Proposals, size: tuple[int, int]) -> Float:
-    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution."""
-    boxes = proposals.boxes.astype(np.float32)
-    shorter = float(min(size))
-    area = np.array([cv2.contourArea(contour) for contour in proposals.contours], np.float32)
-    hull = np.array([cv2.contourArea(cv2.convexHull(c)) for c in proposals.contours], np.float32)
-    length = np.array([len(contour) for contour in proposals.contours], np.float32)
-    width, height = boxes[:, 2], boxes[:, 3]
-    return np.stack(
-        [
-            (boxes[:, 0] + width / 2) / size[0],
-            (boxes[:, 1] + height / 2) / size[1],
-            np.log(width / shorter),
-            np.log(height / shorter),
-            np.log(width / height),
-            area / (width * height),
-            area / np.maximum(hull, 1.0),
-            length / np.sqrt(np.maximum(area, 1.0)),
-            proposals.cut.astype(np.float32),
-        ],
-        axis=1,
-    ).astype(np.float32)
+def channel_sums(picture: Image, skin: Image, loops: CellLoops | None = None) -> Sums:
+    """The integral images of a BGR picture, uint8 (h, w, 3), and its skin map, uint8 (h, w)."""
+    luma = np.asarray(cv2.LUT(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), _ROOTS), np.uint8)
+    dx = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 1, 0, ksize=3), np.int16)
+    dy = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 0, 1, ksize=3), np.int16)
+    return (loops or PLAIN).sums(luma, skin, dx, dy)
 
 
-def describe(colour: ColourMap, proposals: Proposals) -> Float:
-    """float32 (n, 7 × cells² + 9): one row for each proposal.
+def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellLoops | None = None) -> Float:
+    """float32 (n, COLUMNS): one row for each region of a picture of `size`, (width, height).
 
     Luma is taken relative to the box's own mean and spread, gradients relative to the box's mean
     gradient, so that neither exposure nor veil moves the numbers; skin stays as it is.
     """
-    if not len(proposals):
+    if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
-    means = _cell_means(channels(colour), proposals.boxes)
-    luma = means[:, :1]
-    centred = luma - luma.mean(axis=(2, 3), keepdims=True)
-    luma = centred / (luma.std(axis=(2, 3), keepdims=True) + np.float32(0.01))
-    gradient = means[:, 2:] / (means[:, 2:3].mean(axis=(2, 3), keepdims=True) + np.float32(0.005))
-    cells = np.concatenate([luma, means[:, 1:2], gradient], axis=1).reshape(len(proposals), -1)
-    height, width = colour.skin.shape
-    return np.concatenate([cells, _shapes(proposals, (width, height))], axis=1).astype(np.float32)
+    cells = (loops or PLAIN).cells(sums, regions.boxes)
+    return np.concatenate([cells, _shapes(regions, size)], axis=1)
+
+
+def _shapes(regions: Proposals, size: tuple[int, int]) -> Float:
+    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution."""
+    x, y, width, height = regions.boxes.T.astype(np.float64)
+    area = np.array([cv2.contourArea(contour) for contour in regions.contours])
+    hull = np.array([cv2.contourArea(cv2.convexHull(contour)) for contour in regions.contours])
+    length = np.array([len(contour) for contour in regions.contours])
+    rows = np.empty((len(regions), SHAPE_NUMBERS), np.float32)
+    rows[:, 0] = (x + width / 2) / size[0]
+    rows[:, 1] = (y + height / 2) / size[1]
+    rows[:, 2] = width / min(size)
+    rows[:, 3] = height / min(size)
+    rows[:, 4] = width / height
+    rows[:, 5] = area / (width * height)
+    rows[:, 6] = area / np.maximum(hull, 1.0)
+    rows[:, 7] = length / np.sqrt(np.maximum(area, 1.0))
+    rows[:, 8] = regions.cut
+    return rows
+
+
+def _plain_sums(luma: Image, skin: Image, dx: NDArray[np.int16], dy: NDArray[np.int16]) -> Sums:
+    across, down = np.abs(dx), np.abs(dy)
+    wide, tall = across.astype(np.int32), down.astype(np.int32)
+    strength = np.sqrt((wide * wide + tall * tall).astype(np.float32))
+    # A step of luma gives Sobel's sums four times itself; stronger edges than 255 levels count as that.
+    strength *= np.float32(0.25)
+    magnitude = np.minimum(strength, np.float32(255.0)).astype(np.uint8)
+    # 12 / 29 is the tangent of an eighth of a turn's half.
+    along_x, along_y = 29 * tall < 12 * wide, 29 * wide < 12 * tall
+    rising = (dx ^ dy) >= 0
+    slanted = ~(along_x | along_y)
+    masks = along_x, slanted & rising, along_y, slanted & ~rising
+    planes = [luma, skin, *(magnitude * mask for mask in masks)]
+    return np.stack([cv2.integral(plane, sdepth=cv2.CV_32S) for plane in planes]).astype(np.int32, copy=False)
+
+
+def _edges(start: NDArray[np.int32], side: NDArray[np.int32], end: int) -> NDArray[np.int32]:
+    """int32 (n, CELLS + 1): the borders of the cells, start + side (1/2 + 1.4 (k / 6 - 1/2)) to the nearest pixel."""
+    steps = np.arange(CELLS + 1, dtype=np.int32) * CONTEXT_TENTHS + (5 * CELLS - CELLS * CONTEXT_TENTHS // 2)
+    unit = 10 * CELLS
+    return ((unit * start[:, None] + side[:, None] * steps + unit // 2) // unit).clip(0, end)
+
+
+def _plain_cells(sums: Sums, boxes: NDArray[np.int32]) -> Float:
+    planes, height, width = sums.shape
+    columns = _edges(boxes[:, 0], boxes[:, 2], width - 1)
+    rows = _edges(boxes[:, 1], boxes[:, 3], height - 1)
+    places = rows[:, :, None] * width + columns[:, None, :]
+    corners = sums.reshape(planes, -1).take(places, axis=1)
+    strips = corners[:, :, 1:] - corners[:, :, :-1]
+    totals = strips[..., 1:] - strips[..., :-1]
+    areas = np.diff(rows, axis=1)[:, :, None] * np.diff(columns, axis=1)[:, None, :]
+    whole = np.concatenate([totals[:2], totals[2:].sum(axis=0, keepdims=True), totals[2:]])
+    means = (whole * np.int64(PART) + areas // 2) // np.maximum(areas, 1)
+    means = means.reshape(len(whole), len(boxes), CELLS**2)
+    luma, skin, gradients = means[0], means[1], means[2:]
+    count = CELLS**2
+    total = luma.sum(axis=1, keepdims=True)
+    spread = np.sqrt((count * (luma * luma).sum(axis=1, keepdims=True) - total * total).astype(np.float64))
+    found = np.empty((len(boxes), 3 + DIRECTIONS, count), np.float32)
+    found[:, 0] = (count * luma - total) / (spread + count * LUMA_FLOOR)
+    found[:, 1] = skin / np.float64(255 * PART)
+    strength = gradients[0].sum(axis=1) + count * GRADIENT_FLOOR
+    found[:, 2:] = ((count * gradients) / strength[:, None].astype(np.float64)).transpose(1, 0, 2)
+    return found.reshape(len(boxes), (3 + DIRECTIONS) * count)
+
+
+PLAIN: Final = CellLoops(_plain_sums, _plain_cells)

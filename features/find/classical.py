@@ -1,72 +1,152 @@
 """The classical choice: regions of many thresholds, scored by trees on what the picture looks like there.
 
 No net: channels of the picture averaged over a grid, the outline's numbers and its nearness to the bank of hand
-contours. Selected by `--selector classical`, and the baseline of every table.
+contours. Two looks: every region is glanced at, and only the few that stand out are seen without their forearms, beside
+the bank, by more trees. So a frame costs a bounded time whatever it shows. Selected by `--selector classical`, and the
+baseline of every table.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
 from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
-from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, score_pairs
-from lightgesture.features.find.proposals import Proposals, fill_contour, propose
+from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, scored_pairs
+from lightgesture.features.find.cells import PLAIN, CellLoops
+from lightgesture.features.find.proposals import (
+    LEVELS,
+    Distinct,
+    Proposals,
+    fill_contour,
+    plain_distinct,
+    whole_regions,
+    without_forearms,
+)
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
 from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
-from lightgesture.features.find.trees import evaluate
+from lightgesture.features.find.trees import FlatTrees, Trees, Walk, plain_walk
 from lightgesture.features.geometry import pairwise_iou, scale_boxes
+from lightgesture.features.skin_map import PLAIN as PLAIN_SKIN
+from lightgesture.features.skin_map import SkinLoops, skin_map
 from lightgesture.features.types import Box, Candidates, Float, HandRegion, Image
 
 COLUMNS: Final = cells.COLUMNS + BANK_NUMBERS
-"""Numbers of one region."""
+"""Numbers of one region at the second look."""
+STANDING_OUT: Final = 24
+"""Most regions that get the second look."""
+ARMS: Final = 10
+"""Of these, the first of which are tried without their forearm."""
 ALTERNATIVES: Final = 3
 """Most other extents kept with a candidate; each is one more patch to read."""
 ALTERNATIVE_IOU: Final = 0.35
 """Least overlap of another extent with the candidate."""
 
 
-def describe_regions(colour: ColourMap, proposals: Proposals, bank: Bank) -> Float:
-    """float32 (n, COLUMNS): what the picture looks like there, then how near the outline is to the bank's hands, and
-    how much nearer than to other things."""
-    if not len(proposals):
+@dataclass(frozen=True, slots=True)
+class Loops:
+    """What loops over pixels, boxes and nodes: NumPy and OpenCV, or compiled; either gives the same answers."""
+
+    skin: SkinLoops = PLAIN_SKIN
+    cells: CellLoops = PLAIN
+    distinct: Distinct = plain_distinct
+    walk: Walk = plain_walk
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A frame made ready. skin: its skin map. sums: its integral images. size: (width, height), working pixels."""
+
+    skin: Image
+    sums: cells.Sums
+    size: tuple[int, int]
+
+    @classmethod
+    def of(cls, colour: ColourMap, loops: Loops) -> "Scene":
+        skin = skin_map(colour.picture, loops.skin) if colour.skin_of is skin_map else colour.skin
+        sums = cells.channel_sums(colour.picture, skin, loops.cells)
+        return cls(skin, sums, (skin.shape[1], skin.shape[0]))
+
+
+class Scorer:
+    """Both looks, with the trees of a file."""
+
+    def __init__(self, glance: Trees, regions: Trees, bank: Bank, loops: Loops) -> None:
+        """glance, regions, bank: of `ClassicalParts`."""
+        self._glance, self._regions = FlatTrees.of(glance), FlatTrees.of(regions)
+        self._bank, self._loops = bank, loops
+
+    def process(self, scene: Scene, levels: int = LEVELS) -> tuple[Proposals, Float]:
+        """Regions that may be hands, with and without their forearms, and the predicted IoU of each with a hand.
+
+        levels: of `whole_regions`.
+        """
+        whole = whole_regions(scene.skin, levels, self._loops.distinct)
+        rows = cells.describe(scene.sums, whole, scene.size, self._loops.cells)
+        seen, rows = standing_out(
+            scene, whole, rows, self._glance.scores(rows, self._loops.walk), self._loops
+        )
+        numbers = with_bank(rows, seen, self._bank)
+        return seen, self._regions.scores(numbers, self._loops.walk)
+
+
+def standing_out(
+    scene: Scene, whole: Proposals, rows: Float, scores: Float, loops: Loops
+) -> tuple[Proposals, Float]:
+    """The regions that get the second look, with and without forearms, and their rows of `cells.describe`."""
+    best = np.argsort(-scores, kind="stable")[:STANDING_OUT]
+    chosen = whole.taken(best)
+    hands = without_forearms(chosen, range(min(len(chosen), ARMS)))
+    more = cells.describe(scene.sums, hands, scene.size, loops.cells)
+    return chosen.joined(hands), np.concatenate([rows[best], more])
+
+
+def with_bank(rows: Float, regions: Proposals, bank: Bank) -> Float:
+    """float32 (n, COLUMNS): rows of `cells.describe`, then how near the outline is to the bank's hands, and how much
+    nearer than to other things."""
+    if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
-    distances = bank_distances(proposals.contours, bank)
+    distances = bank_distances(regions.contours, bank)
     hands = np.delete(distances, bank.classes.index(OTHER), axis=1).min(axis=1)
-    numbers = cells.describe(colour, proposals), hands, hand_proximity(distances, bank)
-    return np.column_stack(numbers).astype(np.float32)
+    return np.column_stack([rows, hands, hand_proximity(distances, bank)]).astype(np.float32)
 
 
 def mean_colour(colour: ColourMap, proposals: Proposals, index: int) -> Float:
     """float32 (3,): mean blue, green and red inside the outline of a proposal, 0 to 1."""
-    x, y, width, height = (int(value) for value in proposals.boxes[index])
+    x, y, width, height = proposals.box(index)
     mask = fill_contour(proposals.contours[index], (x, y, width, height))
     means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
     return np.array(means, np.float32) / np.float32(255.0)
 
 
-def scored_candidates(colour: ColourMap, proposals: Proposals, scores: Float) -> tuple[list[int], Rows]:
-    """Numbers of the proposals that go on to pairing, and what their pairs need."""
-    kept = best_distinct(pairwise_iou(proposals.boxes, proposals.boxes), scores)
+def scored_candidates(
+    colour: ColourMap, proposals: Proposals, scores: Float, overlap: NDArray[np.float64]
+) -> tuple[list[int], Rows]:
+    """Numbers of the proposals that go on to pairing, and what their pairs need. overlap: IoU of every two, (n, n)."""
+    kept = best_distinct(overlap, scores)
     colours = [mean_colour(colour, proposals, index) for index in kept]
     return kept, candidate_rows(proposals.boxes[kept], scores[kept], proposals.levels[kept], colours)
 
 
-def other_extents(proposals: Proposals, scores: Float, kept: Sequence[int]) -> list[list[int]]:
-    """For each kept proposal the best of the others that overlap it most among the kept."""
+def other_extents(overlap: NDArray[np.float64], scores: Float, kept: Sequence[int]) -> list[list[int]]:
+    """For each kept proposal the best of the others that overlap it most among the kept. overlap: IoU of every two, (n,
+    n)."""
     if not kept:
         return []
-    overlap = pairwise_iou(proposals.boxes, proposals.boxes[kept])
-    nearest = overlap.argmax(axis=1)
-    order = np.argsort(-scores, kind="stable")
-    near_enough = overlap.max(axis=1) >= ALTERNATIVE_IOU
-    return [
-        [int(i) for i in order if near_enough[i] and nearest[i] == place and i != index][:ALTERNATIVES]
-        for place, index in enumerate(kept)
-    ]
+    with_kept = overlap[:, kept]
+    nearest = with_kept.argmax(axis=1).tolist()
+    near_enough = (with_kept.max(axis=1) >= ALTERNATIVE_IOU).tolist()
+    others: list[list[int]] = [[] for _ in kept]
+    for index in np.argsort(-scores, kind="stable").tolist():
+        place = nearest[index]
+        if near_enough[index] and index != kept[place] and len(others[place]) < ALTERNATIVES:
+            others[place].append(index)
+    return others
 
 
 def _region(
@@ -83,21 +163,24 @@ class ClassicalSelector:
 
     settings: SelectorSettings = CLASSICAL
 
-    def __init__(self, parts: ClassicalParts) -> None:
-        self._parts = parts
+    def __init__(self, parts: ClassicalParts, loops: Loops | None = None) -> None:
+        """loops: None for NumPy's and OpenCV's."""
+        self._loops = loops or Loops()
+        self._scorer = Scorer(parts.glance, parts.regions, parts.bank, self._loops)
+        self._pairs = FlatTrees.of(parts.pairs)
 
     def process(self, colour: ColourMap) -> Candidates:
         """Score the regions of one frame. A frame without contrast gives no candidates."""
-        proposals = propose(colour)
-        if not len(proposals):
-            return Candidates((), np.zeros((0, 0), np.float32), colour.source_size)
-        scores = evaluate(self._parts.regions, describe_regions(colour, proposals, self._parts.bank))
-        kept, items = scored_candidates(colour, proposals, scores)
-        height, width = colour.picture.shape[:2]
-        together = score_pairs(self._parts.pairs, items, (width, height), None)
+        scene = Scene.of(colour, self._loops)
+        proposals, scores = self._scorer.process(scene)
+        overlap = pairwise_iou(proposals.boxes, proposals.boxes)
+        kept, items = scored_candidates(colour, proposals, scores, overlap)
+        together = scored_pairs(
+            lambda rows: self._pairs.scores(rows, self._loops.walk), items, scene.size, None
+        )
         regions = tuple(
             _region(colour, proposals, index, float(scores[index]), extents)
-            for index, extents in zip(kept, other_extents(proposals, scores, kept), strict=True)
+            for index, extents in zip(kept, other_extents(overlap, scores, kept), strict=True)
         )
         return Candidates(regions, together, colour.source_size)
 

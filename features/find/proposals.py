@@ -10,6 +10,8 @@ the circle is the forearm, straight or slanted, and gives the arm's direction; t
 from the palm's centre. Fingers stay out of this because a raised hand has them above its palm.
 """
 
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -18,13 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.geometry import keep_distinct, pairwise_iou
+from lightgesture.features.geometry import keep_distinct
 from lightgesture.features.types import Box, Contour, Image
 
-Point = NDArray[np.float64]
+Point = tuple[float, float]
 
-LEVELS: Final = 32
-"""Thresholds over the skin map; 32 is the knee, 8 lose hands in the dark."""
+LEVELS: Final = 24
+"""Thresholds over the skin map; 8 lose hands in the dark, and 32 find no more."""
 SMALLEST_SIDE: Final = 0.045
 """Of the region's box, as a share of the working picture's shorter side; what is smaller cannot be read."""
 LARGEST_SIDE: Final = 0.85
@@ -33,10 +35,14 @@ SHORTEST_CONTOUR: Final = 16
 """Pixels of outline in the working picture."""
 LARGEST_ASPECT: Final = 3.5
 """Longer over shorter side of the box."""
-SAME_IOU: Final = 0.88
-"""Boxes that overlap more than this are one proposal."""
-MOST: Final = 160
+SAME_HUNDREDTHS: Final = 88
+"""Boxes whose IoU is more than this, in hundredths, are one proposal."""
+MOST: Final = 96
 """Regions kept for the later stages, so that a picture of specks costs a bounded time."""
+MOST_LOOKED_AT: Final = 192
+"""Regions compared with one another for near-equal ones, of which those of the highest levels count."""
+MOST_OUTLINES: Final = 1200
+"""Outlines, specks included, after which no lower level is looked at: a picture of noise has thousands at each."""
 WRIST_DISTANCE: Final = 1.2
 """Of the wrist from the palm's centre along the arm, palm radii."""
 ARM_TOP: Final = 0.6
@@ -65,60 +71,117 @@ class Proposals:
     def __len__(self) -> int:
         return len(self.contours)
 
+    def box(self, number: int) -> Box:
+        """One of the boxes."""
+        x, y, width, height = self.boxes[number].tolist()
+        return x, y, width, height
 
-def _contours_at(skin: Image, threshold: int) -> list[Contour]:
-    """Outer contours of the pixels at or above `threshold` whose boxes may hold a hand."""
+    def taken(self, numbers: NDArray[np.intp]) -> "Proposals":
+        """Some of the regions, in that order."""
+        contours = tuple(self.contours[number] for number in numbers)
+        return Proposals(self.boxes[numbers], contours, self.levels[numbers], self.cut[numbers])
+
+    def joined(self, others: "Proposals") -> "Proposals":
+        """These regions, then others."""
+        return Proposals(
+            np.concatenate([self.boxes, others.boxes]),
+            self.contours + others.contours,
+            np.concatenate([self.levels, others.levels]),
+            np.concatenate([self.cut, others.cut]),
+        )
+
+
+def _contours_at(skin: Image, threshold: int) -> tuple[list[Contour], list[Box], int]:
+    """Outer contours of the pixels at or above `threshold` whose boxes may hold a hand, these boxes, and the number of
+    all outlines."""
     mask = cv2.threshold(skin, threshold - 1, 255, cv2.THRESH_BINARY)[1]
     contours = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     shorter = min(skin.shape)
     low, high = SMALLEST_SIDE * shorter, LARGEST_SIDE * shorter
-    found = []
+    found, boxes = [], []
     for contour in contours:
         if len(contour) < SHORTEST_CONTOUR:
             continue
-        short, long = sorted(cv2.boundingRect(contour)[2:])
+        box = cv2.boundingRect(contour)
+        short, long = (box[2], box[3]) if box[2] < box[3] else (box[3], box[2])
         if low <= short and long <= high and long <= LARGEST_ASPECT * short:
-            found.append(contour.reshape(-1, 2).astype(np.int32, copy=False))
-    return found
+            found.append(np.asarray(contour, np.int32).reshape(-1, 2))
+            boxes.append((box[0], box[1], box[2], box[3]))
+    return found, boxes, len(contours)
 
 
-def _distinct(contours: list[Contour], levels: list[int], cut: list[bool]) -> Proposals:
+Distinct = Callable[[NDArray[np.int32], int], NDArray[np.intp]]
+"""(boxes, most) -> numbers of the first `most` boxes, int32 (n, 4), that do not nearly agree with one before."""
+
+
+def plain_distinct(boxes: NDArray[np.int32], most: int) -> NDArray[np.intp]:
+    """A `Distinct` by NumPy."""
+    low, high = boxes[:, :2], boxes[:, :2] + boxes[:, 2:]
+    sides = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
+    np.maximum(sides, 0, out=sides)
+    both = sides[..., 0] * sides[..., 1]
+    areas = boxes[:, 2] * boxes[:, 3]
+    # both / union > SAME_HUNDREDTHS / 100 in whole numbers.
+    same = (100 + SAME_HUNDREDTHS) * both > SAME_HUNDREDTHS * (areas[:, None] + areas)
+    return np.array(keep_distinct(same, range(len(boxes)), most), np.intp)
+
+
+def whole_regions(skin: Image, levels: int = LEVELS, distinct: Distinct = plain_distinct) -> Proposals:
+    """Regions of the skin map, uint8 (h, w), at any level that may be hands, forearms and all.
+
+    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range.
+    """
+    found: list[Contour] = []
+    boxes: list[Box] = []
+    thresholds: list[int] = []
+    outlines = 0
+    for level in range(levels - 1, 0, -1):
+        threshold = level * 256 // levels
+        contours, sized, count = _contours_at(skin, threshold)
+        found += contours
+        boxes += sized
+        thresholds += [threshold] * len(contours)
+        outlines += count
+        # The reddest regions come first, so specks at the low levels are what a flood loses.
+        if len(found) >= MOST_LOOKED_AT or outlines >= MOST_OUTLINES:
+            break
+    return _distinct(found, boxes, thresholds, [False] * len(found), distinct)
+
+
+def _distinct(
+    contours: list[Contour], boxes: list[Box], levels: list[int], cut: list[bool], distinct: Distinct
+) -> Proposals:
     """The first of each group of regions whose boxes nearly agree, as many as are wanted."""
-    boxes = np.array([cv2.boundingRect(contour) for contour in contours], np.int32).reshape(-1, 4)
-    same = pairwise_iou(boxes, boxes) > SAME_IOU
-    kept = keep_distinct(same, range(len(contours)), MOST)
+    looked_at = np.array(boxes[:MOST_LOOKED_AT], np.int32).reshape(-1, 4)
+    kept = distinct(looked_at, MOST)
     return Proposals(
-        boxes=boxes[kept],
+        boxes=looked_at[kept],
         contours=tuple(contours[index] for index in kept),
         levels=np.array(levels, np.uint8)[kept],
         cut=np.array(cut, bool)[kept],
     )
 
 
-def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
-    """Regions of the skin map that may be hands, without their forearms where one was found.
+def without_forearms(regions: Proposals, numbers: Iterable[int]) -> Proposals:
+    """Those of some regions whose forearm can be cut off, without it."""
+    hands = {number: cut_forearm(regions.contours[number], regions.box(number)) for number in numbers}
+    cut = {number: hand for number, hand in hands.items() if hand is not None}
+    boxes = [cv2.boundingRect(hand) for hand in cut.values()]
+    return Proposals(
+        np.array(boxes, np.int32).reshape(-1, 4),
+        tuple(cut.values()),
+        regions.levels[list(cut)],
+        np.ones(len(cut), bool),
+    )
 
-    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range.
-    """
-    found: list[Contour] = []
-    thresholds: list[int] = []
-    for level in range(levels - 1, 0, -1):
-        threshold = level * 256 // levels
-        found += _contours_at(colour.skin, threshold)
-        thresholds += [threshold] * (len(found) - len(thresholds))
-        # The reddest regions come first, so specks at the low levels are what a flood loses.
-        if len(found) >= 4 * MOST:
-            break
-    whole = _distinct(found, thresholds, [False] * len(found))
-    contours, thresholds = list(whole.contours), whole.levels.tolist()
-    for contour, (x, y, width, height), threshold in zip(
-        whole.contours, whole.boxes.tolist(), whole.levels.tolist(), strict=True
-    ):
-        hand = cut_forearm(contour, (x, y, width, height))
-        if hand is not None:
-            contours.append(hand)
-            thresholds.append(threshold)
-    return _distinct(contours, thresholds, [index >= len(whole) for index in range(len(contours))])
+
+def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
+    """Regions of the skin map that may be hands, and all of them without their forearms where one was found."""
+    whole = whole_regions(colour.skin, levels)
+    hands = without_forearms(whole, range(len(whole)))
+    every = whole.joined(hands)
+    boxes = [every.box(index) for index in range(len(every))]
+    return _distinct(list(every.contours), boxes, every.levels.tolist(), every.cut.tolist(), plain_distinct)
 
 
 def fill_contour(contour: Contour, box: Box, border: int = 0) -> Image:
@@ -140,7 +203,7 @@ def palm_circle(mask: Image) -> tuple[tuple[int, int], float]:
 
 
 def arm_direction(mask: Image, centre: tuple[int, int], radius: float) -> Point | None:
-    """Unit vector (x, y) from the palm's centre along the forearm, float64 (2,); None where there is none.
+    """Unit vector (x, y) from the palm's centre along the forearm; None where there is none.
 
     Enlarged and mirrored: with the mask. It looks downwards alone, so it does not follow a turn by more than about 60
     degrees.
@@ -151,12 +214,13 @@ def arm_direction(mask: Image, centre: tuple[int, int], radius: float) -> Point 
     arm = mask[top:].copy()
     cv2.circle(arm, (centre[0], centre[1] - top), round(ARM_RING * radius), 0, cv2.FILLED)
     moments = cv2.moments(arm, binaryImage=True)
-    if moments["m00"] < max(LEAST_REMAINDER * cv2.countNonZero(mask), 1.0):
+    area = moments["m00"]
+    if area < max(LEAST_REMAINDER * cv2.countNonZero(mask), 1.0):
         return None
-    towards = np.array([moments["m10"], moments["m01"]]) / moments["m00"] - np.array(centre) + (0, top)
-    length = float(np.hypot(*towards))
+    across, down = moments["m10"] / area - centre[0], moments["m01"] / area - centre[1] + top
+    length = math.hypot(across, down)
     # Rests on both sides of a palm may balance each other: then no arm leaves it.
-    return np.asarray(towards / length, np.float64) if length > 0.0 else None
+    return (across / length, down / length) if length > 0.0 else None
 
 
 def cut_forearm(contour: Contour, box: Box) -> Contour | None:
@@ -167,20 +231,34 @@ def cut_forearm(contour: Contour, box: Box) -> Contour | None:
     if direction is None:
         return None
     whole = cv2.countNonZero(mask)
-    _erase_beyond(mask, np.array(centre) + WRIST_DISTANCE * radius * direction, direction)
-    parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
-    if not parts or whole - cv2.countNonZero(mask) < LEAST_REMAINDER * whole:
+    wrist = WRIST_DISTANCE * radius
+    _erase_beyond(mask, (centre[0] + wrist * direction[0], centre[1] + wrist * direction[1]), direction)
+    if whole - cv2.countNonZero(mask) < LEAST_REMAINDER * whole:
         return None
-    largest = max(parts, key=cv2.contourArea)
-    if cv2.boundingRect(largest)[3] < LEAST_HEIGHT:
+    # Of the outline in the picture's pixels: the mask begins a pixel before the box.
+    parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE, offset=(box[0] - 1, box[1] - 1))[
+        0
+    ]
+    largest = max(parts, key=cv2.contourArea, default=None)
+    if largest is None or cv2.boundingRect(largest)[3] < LEAST_HEIGHT:
         return None
-    return np.asarray(largest.reshape(-1, 2) + np.array([box[0] - 1, box[1] - 1]), np.int32)
+    return np.asarray(largest, np.int32).reshape(-1, 2)
 
 
 def _erase_beyond(mask: Image, point: Point, direction: Point) -> None:
     """Set to 0 what lies past the line through `point` across `direction`."""
+    (x, y), (along_x, along_y) = point, direction
     far = float(sum(mask.shape))
-    across = np.array([-direction[1], direction[0]]) * far
-    onwards = direction * far
-    corners = np.rint([point - across, point + across, point + across + onwards, point - across + onwards])
-    cv2.fillConvexPoly(mask, corners.astype(np.int32), 0)
+    corners = np.array(
+        [
+            (round(x + far * step_x), round(y + far * step_y))
+            for step_x, step_y in (
+                (along_y, -along_x),
+                (-along_y, along_x),
+                (-along_y + along_x, along_x + along_y),
+                (along_y + along_x, -along_x + along_y),
+            )
+        ],
+        np.int32,
+    )
+    cv2.fillConvexPoly(mask, corners, 0)

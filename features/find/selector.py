@@ -38,7 +38,9 @@ def load_selector(
         raise ValueError(f"selector {selector!r}: must be learned or classical")
     if selector == "learned":
         return LearnedSelector(load_learned(file))
-    return ClassicalSelector(load_classical(file))
+    from lightgesture.features.compiled import best_loops
+
+    return ClassicalSelector(load_classical(file), best_loops())
 
 
 def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | None:

@@ -27,7 +27,7 @@ TREE_ARRAYS: Final = ("feature", "threshold", "left", "right", "value")
 TREE_NUMBERS: Final = ("base", "depth")
 """What is stored of trees, each under the name of the part and this one."""
 CLASSICAL_PARTS, LEARNED_PARTS = (
-    ("regions", "region_pairs", "bank"),
+    ("glance", "extents", "extent_pairs", "bank"),
     ("places", "place_pairs", "locator", "refiner"),
 )
 """Beginnings of the names of what either choice needs; the rest stays packed."""
@@ -42,9 +42,10 @@ class SelectorError(ValueError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClassicalParts:
-    """regions: predicts the IoU of a region with a hand. pairs: of a pair, the lower of both. bank: outlines of
-    hands."""
+    """glance: predicts the IoU that a region has with a hand, with or without its forearm, by its cells alone. regions:
+    the IoU of a region that stood out. pairs: of a pair, the lower of both. bank: outlines of hands."""
 
+    glance: Trees
     regions: Trees
     pairs: Trees
     bank: Bank
@@ -66,8 +67,9 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
 
     def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
         return ClassicalParts(
-            trees_from(arrays, "regions", cells.COLUMNS + BANK_NUMBERS),
-            trees_from(arrays, "region_pairs", PAIR_COLUMNS),
+            trees_from(arrays, "glance", cells.COLUMNS),
+            trees_from(arrays, "extents", cells.COLUMNS + BANK_NUMBERS),
+            trees_from(arrays, "extent_pairs", PAIR_COLUMNS),
             bank_from(arrays, "bank"),
         )
 

@@ -1,6 +1,8 @@
 """Boosted regression trees at run time: arrays in a data file, evaluated without the training library."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,3 +63,52 @@ def evaluate(trees: Trees, rows: NDArray[np.float32]) -> NDArray[np.float32]:
         goes_right = values.take(row + feature.take(node)) > threshold.take(node)
         node = children.take(2 * node + goes_right)
     return np.asarray(trees.base + trees.value.ravel().take(node).sum(axis=1), np.float32)
+
+
+LEAF_UNIT: Final = 1 << 20
+"""Steps of one in the leaves of `FlatTrees`."""
+
+Walk = Callable[["FlatTrees", NDArray[np.float32]], NDArray[np.int64]]
+"""(trees, rows) -> int64 (n,): sum of the leaves that each row (n, columns), float32, reaches, in steps."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlatTrees:
+    """Trees made ready to be walked. All nodes of all trees stand in a row.
+
+    roots: intp (trees,), where each tree begins. feature: intp, threshold: float32, leaf: int32, a node each; leaves
+    are whole steps, so that their sum is the same in any order. children: intp, two a node, left and right.
+    """
+
+    roots: NDArray[np.intp]
+    feature: NDArray[np.intp]
+    threshold: NDArray[np.float32]
+    children: NDArray[np.intp]
+    leaf: NDArray[np.int32]
+    base: float
+    depth: int
+
+    @classmethod
+    def of(cls, trees: Trees) -> "FlatTrees":
+        count, nodes = trees.feature.shape
+        roots = (np.arange(count) * nodes).astype(np.intp)
+        children = np.stack([trees.left + roots[:, None], trees.right + roots[:, None]], axis=-1).ravel()
+        leaf = np.rint(trees.value.ravel() * np.float64(LEAF_UNIT)).astype(np.int32)
+        feature = trees.feature.astype(np.intp).ravel()
+        return cls(roots, feature, trees.threshold.ravel(), children, leaf, trees.base, trees.depth)
+
+    def scores(self, rows: NDArray[np.float32], walk: Walk | None = None) -> NDArray[np.float32]:
+        """What the trees say of rows, float32 (n, columns): float32 (n,). walk: None for `plain_walk`."""
+        total = (walk or plain_walk)(self, np.ascontiguousarray(rows, np.float32))
+        return (self.base + total / LEAF_UNIT).astype(np.float32)
+
+
+def plain_walk(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]:
+    """A `Walk` by NumPy, as in `evaluate`."""
+    values = rows.ravel()
+    row = (np.arange(len(rows)) * rows.shape[1])[:, None]
+    node = np.broadcast_to(trees.roots, (len(rows), len(trees.roots)))
+    for _ in range(trees.depth):
+        goes_right = values.take(row + trees.feature.take(node)) > trees.threshold.take(node)
+        node = trees.children.take(2 * node + goes_right)
+    return np.asarray(trees.leaf.take(node).sum(axis=1, dtype=np.int64), np.int64)

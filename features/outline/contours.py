@@ -5,6 +5,7 @@ Measurements in Taxonomic Problems", 1936) of the pixels in the middle of the pa
 direction of colour in which this hand differs from this room or water; Otsu's threshold cuts along it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
@@ -16,6 +17,8 @@ from numpy.typing import NDArray
 from lightgesture.features.types import Contour, Float
 
 Mask = NDArray[np.uint8]
+Moments = dict[str, float]
+"""What `cv2.moments` gives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,29 +67,46 @@ def contour_length(settings: ContourSettings | None = None) -> int:
 
 
 def contour_vectors(patches: NDArray[np.uint8], settings: ContourSettings | None = None) -> Float:
-    """Contour numbers of patches, uint8 (n, size, size, 3), as float32 (n, `contour_length`)."""
+    """Contour numbers of patches, uint8 (n, size, size, 3), as float32 (n, `contour_length`).
+
+    All patches go through together: for two hands NumPy's calls take longer than what they compute.
+    """
     settings = settings or ContourSettings()
     vectors = np.zeros((len(patches), contour_length(settings)), np.float32)
-    for vector, patch in zip(vectors, patches, strict=True):
-        contour = outline(segment(patch, settings))
-        if contour is not None:
-            vector[:] = contour_numbers(contour, settings)
+    contours = {
+        index: contour
+        for index, mask in enumerate(segments(patches, settings))
+        if (contour := outline(mask)) is not None
+    }
+    if contours:
+        vectors[list(contours)] = _numbers(list(contours.values()), settings)
     return vectors
 
 
 def segment(patch: NDArray[np.uint8], settings: ContourSettings | None = None) -> Mask:
     """Mask of the hand, uint8 (settings.size, settings.size), 255 on one connected region or nowhere."""
-    settings = settings or ContourSettings()
-    small = cv2.resize(patch, (settings.size, settings.size), interpolation=cv2.INTER_AREA)
-    levels = _hand_likeness(np.asarray(small, np.uint8), settings)
+    return segments(patch[None], settings or ContourSettings())[0]
+
+
+def segments(patches: NDArray[np.uint8], settings: ContourSettings) -> list[Mask]:
+    """The mask of each patch, uint8 (n, size, size, 3); see `segment`."""
+    size = settings.size
+    if len(patches) and patches.shape[1:3] != (size, size):
+        reduced = [cv2.resize(patch, (size, size), interpolation=cv2.INTER_AREA) for patch in patches]
+        patches = np.stack([np.asarray(patch, np.uint8) for patch in reduced])
+    return [_middle_region(levels, settings) for levels in _hand_likeness(patches, settings)]
+
+
+def _middle_region(levels: NDArray[np.uint8], settings: ContourSettings) -> Mask:
+    """Of what Otsu's threshold keeps, the connected region that fills most of the middle."""
     binary = np.asarray(cv2.threshold(levels, 0, 255, cv2.THRESH_BINARY + cv2.THRESH_OTSU)[1], np.uint8)
-    labels = np.asarray(cv2.connectedComponents(binary)[1])
-    in_the_middle = np.bincount(labels.reshape(-1)[_regions(settings).middle], minlength=2)
+    count, labels = cv2.connectedComponents(binary, ltype=cv2.CV_16U)
+    in_the_middle = np.bincount(np.asarray(labels).reshape(-1)[_regions(settings).middle], minlength=2)
     in_the_middle[0] = 0
     chosen = int(in_the_middle.argmax())
     if not in_the_middle[chosen]:
         return np.zeros_like(binary)
-    return np.asarray(cv2.inRange(labels, chosen, chosen), np.uint8)
+    return binary if count == 2 else np.asarray(cv2.inRange(labels, chosen, chosen), np.uint8)
 
 
 def outline(mask: Mask) -> Contour | None:
@@ -105,29 +125,37 @@ def contour_numbers(contour: Contour, settings: ContourSettings | None = None) -
     (width over height), circularity (4 pi area / perimeter²), number of deep convexity defects; the four deepest
     defects as shares of the side; the log-signed Hu moments over 10; the radial signature.
     """
-    settings = settings or ContourSettings()
+    return np.asarray(_numbers([contour], settings or ContourSettings())[0], np.float32)
+
+
+def _numbers(contours: Sequence[Contour], settings: ContourSettings) -> Float:
+    """`contour_numbers` of several outlines, float32 (n, `contour_length`)."""
+    moments = [cv2.moments(contour.reshape(-1, 1, 2)) for contour in contours]
+    shapes = [_shape(contour, settings) for contour in contours]
+    invariants = np.array([_hu_of(one) for one in moments])
+    signatures = _signatures(contours, moments, settings.directions)
+    return np.concatenate([shapes, log_signed(invariants) / 10.0, signatures], axis=1).astype(np.float32)
+
+
+def _shape(contour: Contour, settings: ContourSettings) -> list[float]:
+    """The numbers before the moments."""
     area = max(float(cv2.contourArea(contour)), 1.0)
-    hull = cv2.convexHull(contour.reshape(-1, 1, 2))
-    hull_area = max(float(cv2.contourArea(hull)), area)
+    hull = _hull(contour)
+    hull_area = max(float(cv2.contourArea(contour[hull])), area)
     perimeter = max(float(cv2.arcLength(contour, True)), 1.0)
     _, _, width, height = cv2.boundingRect(contour)
     # Outlines in a triangle count as whole: the shipped classifiers learnt from numbers in which they do.
-    depths = defect_depths(contour) / settings.size if len(hull) > 3 else np.zeros(0)
-    shape = [
+    depths = sorted(_depths(contour, hull), reverse=True) if len(hull) > 3 else []
+    shares = [depth / settings.size for depth in depths]
+    return [
         area / settings.size**2,
         area / hull_area,
         area / (width * height),
         width / height,
         4.0 * np.pi * area / perimeter**2,
-        float((depths > settings.deep).sum()) / DEFECTS,
+        float(sum(share > settings.deep for share in shares)) / DEFECTS,
+        *(shares + [0.0] * DEFECTS)[:DEFECTS],
     ]
-    deepest = np.zeros(DEFECTS)
-    found = np.sort(depths)[::-1][:DEFECTS]
-    deepest[: len(found)] = found
-    moments = log_signed(hu_moments(contour)) / 10.0
-    return np.concatenate([shape, deepest, moments, radial_signature(contour, settings.directions)]).astype(
-        np.float32
-    )
 
 
 def hu_moments(contour: Contour) -> NDArray[np.float64]:
@@ -136,14 +164,17 @@ def hu_moments(contour: Contour) -> NDArray[np.float64]:
     Hu, "Visual Pattern Recognition by Moment Invariants", IRE Transactions on Information Theory 8, 1962. They do not
     change when the outline is moved, turned or enlarged; its mirror image changes the sign of the seventh.
     """
-    moments = cv2.moments(contour.reshape(-1, 1, 2))
+    return _hu_of(cv2.moments(contour.reshape(-1, 1, 2)))
+
+
+def _hu_of(moments: Moments) -> NDArray[np.float64]:
     if moments["m00"] == 0.0:
         return np.zeros(HU_COUNT)
     return np.asarray(cv2.HuMoments(moments), np.float64).reshape(HU_COUNT)
 
 
 def log_signed(moments: NDArray[np.float64]) -> NDArray[np.float64]:
-    """sign(h) (12 + log10 |h|), float64 (7,): comparable sizes, the sign of a mirror image kept.
+    """sign(h) (12 + log10 |h|), float64 of any shape: comparable sizes, the sign of a mirror image kept.
 
     Small moments go to 0 from both signs, so that a sign that is only noise does not matter.
     """
@@ -158,18 +189,24 @@ def defect_depths(contour: Contour) -> NDArray[np.float64]:
     Turned, mirrored: the same. Enlarged: with the outline. Homma and Takenaka, "An image processing method for feature
     extraction of space-occupying lesions", 1985.
     """
-    curve = contour.reshape(-1, 1, 2)
-    if len(curve) < 4:
-        return np.zeros(0)
-    hull = np.asarray(cv2.convexHull(curve, returnPoints=False)).reshape(-1)
+    return np.array(_depths(contour, _hull(contour)), np.float64)
+
+
+def _hull(contour: Contour) -> NDArray[np.int32]:
+    """Numbers of the points where the outline meets its hull, int32 (k,), falling."""
+    hull = np.asarray(cv2.convexHull(contour.reshape(-1, 1, 2), returnPoints=False)).reshape(-1)
     # OpenCV refuses a hull whose indices are not monotonous, which rounding makes of outlines that touch themselves.
-    hull = np.sort(hull)[::-1].astype(np.int32)
-    if len(hull) < 3:
-        return np.zeros(0)
-    defects = cv2.convexityDefects(curve, hull.reshape(-1, 1))
-    return (
-        np.zeros(0) if defects is None else np.asarray(defects, np.float64).reshape(-1, 4)[:, 3] / DEPTH_UNIT
-    )
+    return np.sort(hull)[::-1].astype(np.int32)
+
+
+def _depths(contour: Contour, hull: NDArray[np.int32]) -> list[float]:
+    if len(contour) < 4 or len(hull) < 3:
+        return []
+    defects = cv2.convexityDefects(contour.reshape(-1, 1, 2), hull.reshape(-1, 1))
+    if defects is None:
+        return []
+    depths: list[float] = (np.asarray(defects).reshape(-1, 4)[:, 3] / DEPTH_UNIT).tolist()
+    return depths
 
 
 def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:
@@ -178,34 +215,55 @@ def radial_signature(contour: Contour, directions: int) -> NDArray[np.float64]:
     In units of the square root of the area; direction 0 is along x, the next turn towards y (down). Directions
     without a point take the smaller of their neighbours, else 0.
     """
-    moments = cv2.moments(contour.reshape(-1, 1, 2))
-    area = max(moments["m00"], 1.0)
-    centre = np.array([moments["m10"] / area, moments["m01"] / area])
-    offset = contour - centre
-    sector = np.floor(np.arctan2(offset[:, 1], offset[:, 0]) * (directions / (2 * np.pi)) + 0.5).astype(int)
-    signature = np.zeros(directions)
-    np.maximum.at(signature, sector % directions, np.hypot(offset[:, 0], offset[:, 1]) / np.sqrt(area))
-    around = np.concatenate([signature[-1:], signature, signature[:1]])
-    return np.where(signature > 0, signature, np.minimum(around[:-2], around[2:]))
+    return np.asarray(_signatures([contour], [cv2.moments(contour.reshape(-1, 1, 2))], directions)[0])
 
 
-def _hand_likeness(patch: NDArray[np.uint8], settings: ContourSettings) -> NDArray[np.uint8]:
-    """The patch along the colour direction in which its middle differs from its rim, stretched to 0 to 255."""
+def _signatures(
+    contours: Sequence[Contour], moments: Sequence[Moments], directions: int
+) -> NDArray[np.float64]:
+    """`radial_signature` of several outlines, float64 (n, directions), given their moments."""
+    areas = [max(one["m00"], 1.0) for one in moments]
+    lengths = [len(contour) for contour in contours]
+    centres = [
+        (one["m10"] / area, one["m01"] / area, area**0.5) for one, area in zip(moments, areas, strict=True)
+    ]
+    owners = np.repeat(np.arange(len(contours)), lengths)
+    x, y, unit = np.array(centres).T[:, owners]
+    across, down = np.concatenate(contours).T - np.stack([x, y])
+    sector = np.floor(np.arctan2(down, across) * (directions / (2 * np.pi)) + 0.5).astype(int) % directions
+    signatures = np.zeros((len(contours), directions))
+    np.maximum.at(signatures, (owners, sector), np.hypot(across, down) / unit)
+    around = np.concatenate([signatures[:, -1:], signatures, signatures[:, :1]], axis=1)
+    return np.where(signatures > 0, signatures, np.minimum(around[:, :-2], around[:, 2:]))
+
+
+def _hand_likeness(patches: NDArray[np.uint8], settings: ContourSettings) -> list[NDArray[np.uint8]]:
+    """Patches, uint8 (n, size, size, 3), each along the colour direction in which its middle differs from its rim,
+    stretched to 0 to 255."""
     regions = _regions(settings)
-    colours = np.asarray(cv2.LUT(patch, _square_roots()), np.float64).reshape(-1, 3)
-    centres = regions.shares @ colours
-    # The scatter round both centres: the mean products less the products of the means.
-    scatter = (colours * regions.both).T @ colours
-    scatter -= centres.T @ centres
-    scatter += regions.evenness
-    difference = (centres[0] - centres[1])[:, None]
-    direction = np.asarray(cv2.solve(scatter, difference, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)
-    values = colours @ direction
-    mean, deviation = (float(number[0, 0]) for number in cv2.meanStdDev(values))
-    values = (values - mean) / deviation if deviation > 1e-9 else np.zeros_like(values)
-    values = values.reshape(patch.shape[:2]) + regions.bump
-    low, high = cv2.minMaxLoc(values)[:2]
-    return np.asarray((values - low) * (255.0 / (high - low)), np.uint8)
+    size = settings.size
+    # Channel by channel in memory: products of few rows are then quick.
+    planes = np.ascontiguousarray(patches.reshape(len(patches), -1, 3).transpose(0, 2, 1))
+    found = []
+    for colours in np.asarray(cv2.LUT(planes, _square_roots()), np.float64).reshape(planes.shape):
+        centres = colours @ regions.shares
+        # The scatter round both centres: the mean products less the products of the means.
+        scatter = (colours * regions.both) @ colours.T
+        scatter -= centres @ centres.T
+        scatter += regions.evenness
+        difference = centres[:, :1] - centres[:, 1:]
+        direction = np.asarray(cv2.solve(scatter, difference, flags=cv2.DECOMP_CHOLESKY)[1], np.float64)
+        values = (direction.T @ colours).reshape(size, size)
+        mean, deviation = (float(number[0, 0]) for number in cv2.meanStdDev(values))
+        if deviation > 1e-9:
+            values -= mean
+            values /= deviation
+            values += regions.bump
+        else:
+            values = regions.bump
+        low, high = cv2.minMaxLoc(values)[:2]
+        found.append(((values - low) * (255.0 / (high - low))).astype(np.uint8))
+    return found
 
 
 @lru_cache(maxsize=1)
@@ -215,8 +273,8 @@ def _square_roots() -> NDArray[np.float64]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Regions:
-    """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (2, p), of each pixel in
-    the mean of the middle and of the rim. both: (p, 1), their sum. bump: (size, size), mean 0, deviation `prior`.
+    """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (p, 2), of each pixel in
+    the mean of the middle and of the rim. both: (p,), their sum. bump: (size, size), mean 0, deviation `prior`.
     evenness: (3, 3), what is added to the scatter."""
 
     middle: NDArray[np.intp]
@@ -240,8 +298,8 @@ def _regions(settings: ContourSettings) -> _Regions:
     shares = np.stack([region.reshape(-1) / region.sum() for region in (middle, rim)])
     return _Regions(
         np.flatnonzero(middle),
-        shares,
-        shares.sum(axis=0)[:, None],
+        np.asfortranarray(shares.T),
+        shares.sum(axis=0),
         settings.prior * (bump - bump.mean()) / bump.std(),
         settings.evenness * np.eye(3),
     )

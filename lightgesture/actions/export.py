@@ -76,8 +76,9 @@ def _export_selector(files: FlatFiles) -> None:
         {
             "places": (learned.places, PLACE_COLUMNS),
             "place_pairs": (learned.pairs, PAIR_COLUMNS),
-            "regions": (classical.regions, cells.COLUMNS + BANK_NUMBERS),
-            "region_pairs": (classical.pairs, PAIR_COLUMNS),
+            "glance": (classical.glance, cells.COLUMNS),
+            "extents": (classical.regions, cells.COLUMNS + BANK_NUMBERS),
+            "extent_pairs": (classical.pairs, PAIR_COLUMNS),
         },
     )
     export_bank(files, classical.bank)

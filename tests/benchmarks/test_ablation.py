@@ -109,12 +109,13 @@ def test_without_pairs_a_partner_helps_nobody():
 
 def test_scores_other_than_the_trees(colour, parts):
     proposals = propose(colour)
-    for scores in (bank_scores(parts)(colour, proposals), level_scores(colour, proposals)):
+    for regions, scores in (bank_scores(parts)(colour), level_scores(colour)):
+        assert np.array_equal(regions.boxes, proposals.boxes)
         assert scores.shape == (len(proposals),)
         assert scores.dtype == np.float32
         assert (scores >= 0).all()
         assert (scores <= 1).all()
-    assert level_scores(colour, proposals).argmax() == proposals.levels.argmax()
+    assert level_scores(colour)[1].argmax() == proposals.levels.argmax()
 
 
 def test_nothing_is_found_where_nothing_is(parts):

@@ -8,9 +8,17 @@ import pytest
 
 from lightgesture.features import find_hands
 from lightgesture.features.colour import ColourStage, reduce_picture
-from lightgesture.features.find.cells import describe
-from lightgesture.features.find.proposals import cut_forearm, palm_circle, propose
+from lightgesture.features.find import cells, proposals
+from lightgesture.features.find.classical import ARMS, STANDING_OUT, Loops, Scene, Scorer
+from lightgesture.features.find.proposals import (
+    MOST,
+    cut_forearm,
+    palm_circle,
+    propose,
+    whole_regions,
+)
 from lightgesture.features.find.selector import choose, load_selector
+from lightgesture.features.find.selector_file import load_classical
 from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Candidates, HandRegion
@@ -66,11 +74,63 @@ def test_ten_thousand_specks_take_bounded_time_and_are_no_hands():
     assert choose(candidates, stage.settings) == []
 
 
-def test_noise_keeps_proposals_bounded():
-    noise = np.random.default_rng(1).integers(0, 256, (480, 640, 3), np.uint8)
-    proposals = propose(ColourStage().process(noise))
-    assert len(proposals) <= 160
-    assert describe(ColourStage().process(noise), proposals).shape == (len(proposals), 261)
+def _blobs():
+    """500 skin-coloured blobs of hand's proportions, many of them touching."""
+    rng = np.random.default_rng(5)
+    image = np.full((480, 640, 3), WATER, np.uint8)
+    for x, y in rng.integers((0, 0), (640, 480), (500, 2)):
+        shade = np.array(SKIN) * rng.uniform(0.6, 1.2)
+        cv2.ellipse(image, (int(x), int(y)), (11, 16), 0, 0, 360, shade.clip(0, 255).tolist(), cv2.FILLED)
+    return image
+
+
+def _lamp(phase):
+    """A pair of hands under a lamp that flickers over the frame."""
+    image = _picture_with_blob().astype(np.float32)
+    image *= 0.4 + 0.6 * np.abs(np.sin(np.arange(480) / 9.0 + phase))[:, None, None]
+    return image.clip(0, 255).astype(np.uint8)
+
+
+WORST = {
+    "noise": lambda: np.random.default_rng(1).integers(0, 256, (480, 640, 3), np.uint8),
+    "blobs": _blobs,
+    "coarse noise": lambda: cv2.resize(
+        np.random.default_rng(2).integers(0, 256, (60, 80, 3), np.uint8), (640, 480)
+    ),
+    "lamp": lambda: _lamp(0.0),
+    "lamp, later": lambda: _lamp(1.5),
+}
+
+
+@pytest.mark.parametrize("name", WORST)
+def test_the_work_for_the_worst_frames_is_bounded(name, monkeypatch):
+    looked_at, outlines = [], []
+
+    def counted(boxes, most):
+        looked_at.append(len(boxes))
+        return proposals.plain_distinct(boxes, most)
+
+    found = cv2.findContours
+
+    def counted_contours(*args, **options):
+        answer = found(*args, **options)
+        outlines.append(len(answer[0]))
+        return answer
+
+    colour = ColourStage().process(WORST[name]())
+    scene = Scene.of(colour, Loops())
+    monkeypatch.setattr(proposals.cv2, "findContours", counted_contours)
+    regions = whole_regions(scene.skin, distinct=counted)
+    assert looked_at[0] <= proposals.MOST_LOOKED_AT
+    # One level may go over the bound before it is seen.
+    assert sum(outlines[:-1]) < proposals.MOST_OUTLINES
+    assert len(regions) <= MOST
+    parts = load_classical()
+    seen, scores = Scorer(parts.glance, parts.regions, parts.bank, Loops()).process(scene)
+    assert len(seen) == len(scores) <= STANDING_OUT + ARMS
+    rows = cells.describe(scene.sums, regions, scene.size)
+    assert rows.shape == (len(regions), cells.COLUMNS)
+    assert np.isfinite(rows).all()
 
 
 def test_the_forearm_is_cut_off_below_the_palm():

@@ -1,6 +1,7 @@
 """Trees at run time against the library that fitted them; damaged files are refused in one line."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,8 +14,8 @@ from lightgesture.features.find.selector_file import (
     load_classical,
     load_learned,
 )
-from lightgesture.features.find.trees import Trees, evaluate
-from lightgesture.training.model_files import write_selector
+from lightgesture.features.find.trees import FlatTrees, Trees, evaluate
+from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.regions.trees import export_trees
 
 
@@ -30,6 +31,13 @@ def test_exported_trees_predict_what_the_library_predicts():
     np.testing.assert_allclose(evaluate(export_trees(model), rows), model.predict(rows), atol=1e-5)
 
 
+def test_flat_trees_say_what_the_trees_say():
+    trees = load_classical().regions
+    rows = np.random.default_rng(2).normal(0.5, 0.5, (50, 263)).astype(np.float32)
+    np.testing.assert_allclose(FlatTrees.of(trees).scores(rows), evaluate(trees, rows), atol=2e-4)
+    assert FlatTrees.of(trees).scores(rows[:0]).shape == (0,)
+
+
 def _assert_equal_trees(first, second):
     for name in ("feature", "threshold", "left", "right", "value"):
         np.testing.assert_array_equal(getattr(first, name), getattr(second, name))
@@ -40,6 +48,7 @@ def test_a_selector_survives_its_file(tmp_path):
     bundled = load_classical(), load_learned()
     write_selector(*bundled, file)
     classical, learned = load_classical(file), load_learned(file)
+    _assert_equal_trees(classical.glance, bundled[0].glance)
     _assert_equal_trees(classical.regions, bundled[0].regions)
     _assert_equal_trees(classical.pairs, bundled[0].pairs)
     np.testing.assert_array_equal(classical.bank.centres, bundled[0].bank.centres)
@@ -51,6 +60,19 @@ def test_a_selector_survives_its_file(tmp_path):
         for node in mine.weights:
             np.testing.assert_array_equal(mine.weights[node].weights, theirs.weights[node].weights)
     assert [path.name for path in tmp_path.iterdir()] == ["copy.npz"]
+
+
+def test_other_classical_trees_leave_the_learned_choice_as_it_was(tmp_path):
+    classical = load_classical()
+    write_classical(
+        replace(classical, pairs=replace(classical.pairs, base=0.25)), BUNDLED, tmp_path / "new.npz"
+    )
+    assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
+    (header, before), (same, after) = read_archive(BUNDLED), read_archive(tmp_path / "new.npz")
+    assert header == same
+    assert before.keys() == after.keys()
+    for name in before:
+        assert name == "extent_pairs_base" or before[name].tobytes() == after[name].tobytes(), name
 
 
 def _header(**changes):
@@ -69,10 +91,10 @@ def _write(path, **changes):
     [
         {"header": _header(format=99)},
         {"header": _header(kind="cnn")},
-        {"regions_value": np.full((3, 3), np.nan, np.float32)},
-        {"regions_left": np.full((2, 2), 7, np.int16)},
-        {"region_pairs_depth": np.int64(10_000)},
-        {"regions_base": np.array(["x"])},
+        {"extents_value": np.full((3, 3), np.nan, np.float32)},
+        {"extents_left": np.full((2, 2), 7, np.int16)},
+        {"extent_pairs_depth": np.int64(10_000)},
+        {"glance_base": np.array(["x"])},
     ],
     ids=["version", "kind", "nan", "child", "depth", "text"],
 )
@@ -84,10 +106,10 @@ def test_a_file_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
 
 
 def test_nan_in_a_tree_of_the_right_shape_is_refused(tmp_path):
-    value = read_archive(BUNDLED)[1]["regions_value"].copy()
+    value = read_archive(BUNDLED)[1]["extents_value"].copy()
     value[0, 0] = np.nan
     with pytest.raises(SelectorError, match="not finite"):
-        load_classical(_write(tmp_path / "nan.npz", regions_value=value))
+        load_classical(_write(tmp_path / "nan.npz", extents_value=value))
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 not a zip", b"text"])
@@ -112,7 +134,7 @@ def test_a_missing_file_is_refused(tmp_path):
 
 def test_a_pickle_is_never_opened(tmp_path):
     path = tmp_path / "evil.npz"
-    np.savez(path, header=_header(), regions_value=np.array([object()], dtype=object))
+    np.savez(path, header=_header(), extents_value=np.array([object()], dtype=object))
     with pytest.raises(SelectorError, match=r"evil\.npz"):
         load_classical(path)
 
@@ -143,7 +165,7 @@ def test_a_net_with_wrong_content_is_refused_in_one_line(tmp_path, changes):
 
 
 def test_a_file_of_an_older_version_is_told_so(tmp_path):
-    np.savez(tmp_path / "old.npz", version=np.int32(2), regions_value=np.zeros((1, 1), np.float32))
+    np.savez(tmp_path / "old.npz", version=np.int32(2), extents_value=np.zeros((1, 1), np.float32))
     with pytest.raises(
         SelectorError, match=r"old\.npz: has no header, so it is of an older version.*; make it again"
     ):

@@ -13,7 +13,6 @@ from lightgesture.features.colour import WORKING_PIXELS, reduce_picture
 from lightgesture.features.skin_map import (
     compensate_red,
     gray_world,
-    histogram_percentiles,
     redness,
     reference_skin_map,
     skin_map,
@@ -82,18 +81,6 @@ def test_the_fast_map_is_fast():
             best = min(best, time.perf_counter() - start)
         times.append(best)
     assert times[1] < times[0] / 1.5
-
-
-@pytest.mark.parametrize("percents", [(20.0, 99.8), (0.0, 100.0), (50.0, 90.0)])
-def test_percentiles_from_a_histogram_are_exact_to_a_bin(percents):
-    values = np.random.default_rng(2).normal(0, 1, (120, 160)).astype(np.float32)
-    found = histogram_percentiles(values, percents, 2048)
-    width = float(values.max() - values.min()) / 2048
-    np.testing.assert_allclose(found, np.percentile(values, percents), atol=width)
-
-
-def test_percentiles_of_a_constant_are_that_constant():
-    assert histogram_percentiles(np.full((3, 4), 0.25, np.float32), (20.0, 99.8), 256) == (0.25, 0.25)
 
 
 def test_skin_is_redder_than_grey_and_grey_than_water():

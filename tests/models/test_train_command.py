@@ -153,6 +153,19 @@ def test_a_selector_that_could_not_be_written_is_refused_before_the_training(out
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def test_classical_trees_alone_need_the_file_that_keeps_the_rest(tmp_path, capsys):
+    given = ["train", "regions", "--data", str(tmp_path), "--classical"]
+    assert main([*given, "--out", str(tmp_path / "selector.npz")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "--start bundled" in line
+    missing = ["--start", str(tmp_path / "none.npz")]
+    assert main([*given, *missing, "--out", str(tmp_path / "selector.npz")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "--start" in line
+    assert "none.npz" in line
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_other_steps_are_told_with_what_to_do(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

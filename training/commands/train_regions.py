@@ -38,6 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "suffices",
     )
     parser.add_argument(
+        "--classical",
+        action="store_true",
+        help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
+    )
+    parser.add_argument(
         "--precision",
         choices=PRECISIONS,
         default="float32",
@@ -58,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     """Train and write the selector and its card."""
     from lightgesture.features.find.selector_file import SelectorError
     from lightgesture.training.pool.left_out import left_out
-    from lightgesture.training.regions.train import RegionTraining, train_regions
+    from lightgesture.training.regions.train import RegionTraining, train_classical, train_regions
     from lightgesture.training.time_left import NeverSilent
 
     out = model_path(args.out)
@@ -69,12 +74,20 @@ def run(args: argparse.Namespace) -> int:
         without = left_out(args.without, args.fold)
     except ValueError as error:
         raise UsageError(f"--fold: {error}") from error
-    settings = RegionTraining(precision=args.precision, start=_start(args.start))
+    start = _start(args.start)
+    if args.classical and start is None:
+        raise UsageError(
+            "--classical keeps the nets of another file; name it by --start, such as --start bundled"
+        )
+    settings = RegionTraining(precision=args.precision, start=start)
     if args.steps is not None:
         settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
     try:
         with NeverSilent((lambda _: None) if args.quiet else say) as progress:
-            train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
+            if args.classical and start is not None:
+                train_classical(Path(args.data), out, start, args.seed, args.jobs, without, progress)
+            else:
+                train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
     except SelectorError as error:
         raise UsageError(f"--start: {error}") from error
     except KeyboardInterrupt:

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -12,11 +12,12 @@ import cv2
 import numpy as np
 
 from lightgesture.errors import InputError
+from lightgesture.features.compiled import best_loops
 from lightgesture.features.find.learned import Places
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, SelectorError, load_learned
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
-from lightgesture.training.model_files import write_selector
+from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.real_divers import RealDivers
@@ -50,6 +51,10 @@ COMPOSED: Final = 12000
 """Pictures composed for the nets and the classical trees of regions."""
 UNSEEN: Final = 2000
 """Those composed of what is kept from the nets."""
+CLASSICAL_VIEWS: Final = 2
+"""Views of a whole frame, under water, in the dark or mirrored, from which the classical trees learn beside itself."""
+CLASSICAL_COMPOSED: Final = 2000
+"""Composed pictures for them; real ones teach them more."""
 PAIR_SHARE: Final = 0.4
 """Of all pictures for trees, those for pairs."""
 
@@ -115,6 +120,44 @@ def train_regions(
     _write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 
+def train_classical(
+    data: Path,
+    out: Path,
+    start: Path,
+    seed: int = 0,
+    jobs: int = 1,
+    without: LeftOut | None = None,
+    progress: Progress = lambda _: None,
+) -> None:
+    """Fit the classical trees alone; all else of the file is that of `start`, byte for byte, and the card is its card
+    with a word of this. A few minutes once the pictures are composed, which lie in a folder beside `out`.
+
+    Raises InputError, SelectorError, UsageError.
+    """
+    without = without or LeftOut()
+    load_learned(start)
+    told = {CARD_KEY: without.to_card(), "classical": True}
+    folder = checkpoint_folder(out, {"seed": seed, **told})
+    progress("reading whole frames and cutting out hands")
+    material = read_material(data, without, seed)
+    for_nets, for_trees = material.parted(ONE_IN)
+    progress("composing pictures")
+    composed = _compose(for_nets, CLASSICAL_COMPOSED, seed + 1, jobs, folder / "composed.npy")
+    unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
+    progress("fitting the classical trees")
+    second = _tree_pictures(for_trees, unseen, seed)[1]
+    write_classical(_classical(data, for_nets, composed, second, without, seed), start, out)
+    card = start.with_suffix(".json")
+    content = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {}
+    content["classical_trees"] = {
+        "fitted_apart_from_the_nets": True,
+        CARD_KEY: without.to_card(),
+        "seed": seed,
+    }
+    with replacing(out.with_suffix(".json")) as temporary:
+        temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+
+
 def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
     ingredients = Ingredients(material.hands, material.waters(), material.rooms())
     return compose_pool(ingredients, count, seed, jobs, path)
@@ -175,18 +218,27 @@ def _classical(
     without: LeftOut,
     seed: int,
 ) -> ClassicalParts:
-    bank = make_bank(data, seed, without)
+    bank, loops = make_bank(data, seed, without), best_loops()
 
-    def region_pictures() -> Iterator[BoxedPicture]:
-        rng = np.random.default_rng(seed + 1)
-        for picture in material.frames:
-            yield from variants(picture, rng)
-        yield from material.empty
-        yield from (one.picture for one in material.divers if not one.picture.ignored)
-        yield from composed[: len(composed) // 2]
+    def pictures() -> Iterator[BoxedPicture]:
+        return classical_pictures(material, composed, seed + 1)
 
-    regions = fit_regions(region_pictures(), bank, seed)
-    return ClassicalParts(regions, fit_pairs(for_pairs, regions, bank, seed), bank)
+    first, second = fit_regions(pictures, bank, loops, seed)
+    return fit_pairs(for_pairs, first, second, bank, loops, seed)
+
+
+def classical_pictures(
+    material: Material, composed: Sequence[BoxedPicture], seed: int
+) -> Iterator[BoxedPicture]:
+    """What the trees of regions learn from; the same arguments give the same pictures."""
+    rng = np.random.default_rng(seed)
+    for picture in material.frames:
+        views = list(variants(picture, rng))
+        yield views[0]
+        yield from (views[1 + index] for index in rng.permutation(len(views) - 1)[:CLASSICAL_VIEWS])
+    yield from material.empty
+    yield from (one.picture for one in material.divers if not one.picture.ignored)
+    yield from composed[:CLASSICAL_COMPOSED]
 
 
 def _write_card(

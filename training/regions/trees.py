@@ -3,7 +3,7 @@
 Needs scikit-learn; never imported on the decode path.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find import cells
 from lightgesture.features.find.bank import Bank
 from lightgesture.features.find.candidates import (
     PAIR_COLUMNS,
@@ -19,12 +20,20 @@ from lightgesture.features.find.candidates import (
     pair_numbers,
 )
 from lightgesture.features.find.classical import COLUMNS as REGION_COLUMNS
-from lightgesture.features.find.classical import describe_regions, scored_candidates
+from lightgesture.features.find.classical import (
+    Loops,
+    Scene,
+    Scorer,
+    scored_candidates,
+    standing_out,
+    with_bank,
+)
 from lightgesture.features.find.learned import Places, scored_places
 from lightgesture.features.find.locator import Peaks
-from lightgesture.features.find.proposals import Proposals, propose
+from lightgesture.features.find.proposals import Proposals, whole_regions, without_forearms
 from lightgesture.features.find.refiner import Refined
-from lightgesture.features.find.trees import Trees, evaluate
+from lightgesture.features.find.selector_file import ClassicalParts
+from lightgesture.features.find.trees import FlatTrees, Trees, evaluate
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Float
 from lightgesture.training.pictures.boxed import BoxedPicture
@@ -44,12 +53,14 @@ class TreeSettings:
     """Fewest rows in a leaf."""
     rate: float
     """Learning rate, the factor on what each tree adds, 0 to 1."""
-    hand_weight: float = 1.0
-    """Weight of a row whose IoU is over `HAND_IOU` beside 1, since hands are rare."""
+    hand_copies: int = 1
+    """How often a row is learnt from whose IoU is over `HAND_IOU`, since hands are rare. Weights would do the same, and
+    take many times as long to sort."""
 
 
-REGION_TREES: Final = TreeSettings(trees=200, leaves=48, depth=8, least_rows=40, rate=0.12, hand_weight=3.0)
-PAIR_TREES: Final = TreeSettings(trees=120, leaves=24, depth=6, least_rows=30, rate=0.1, hand_weight=3.0)
+GLANCE_TREES: Final = TreeSettings(trees=60, leaves=32, depth=6, least_rows=60, rate=0.2, hand_copies=3)
+REGION_TREES: Final = TreeSettings(trees=160, leaves=48, depth=8, least_rows=40, rate=0.12, hand_copies=3)
+PAIR_TREES: Final = TreeSettings(trees=120, leaves=24, depth=6, least_rows=30, rate=0.1, hand_copies=3)
 PLACE_TREES: Final = TreeSettings(trees=80, leaves=12, depth=4, least_rows=40, rate=0.08)
 """Of places and of their pairs."""
 SMOOTHING: Final = 1.0
@@ -62,25 +73,13 @@ KEPT_SHARE: Final = 0.4
 """Of the regions whose IoU is not above `MIDDLING_IOU`, the share that is trained on: they are many and alike."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Described:
-    colour: ColourMap
-    proposals: Proposals
-    numbers: Float
-    overlaps: Float
-
-
-def _describe_picture(stage: ColourStage, picture: BoxedPicture, bank: Bank) -> _Described | None:
-    colour = stage.process(picture.image)
-    proposals = propose(colour)
-    if not len(proposals):
-        return None
+def overlaps_with(picture: BoxedPicture, colour: ColourMap, regions: Proposals) -> Float:
+    """float32 (n,): IoU of each region with the best hand."""
+    if not picture.boxes or not len(regions):
+        return np.zeros(len(regions), np.float32)
     scale = np.array([*colour.scale, *colour.scale])
-    overlaps = np.zeros(len(proposals), np.float32)
-    if picture.boxes:
-        boxes = np.array(picture.boxes, np.float64)
-        overlaps = pairwise_iou(proposals.boxes * scale, boxes).max(axis=1).astype(np.float32)
-    return _Described(colour, proposals, describe_regions(colour, proposals, bank), overlaps)
+    boxes = np.array(picture.boxes, np.float64)
+    return np.asarray(pairwise_iou(regions.boxes * scale, boxes).max(axis=1), np.float32)
 
 
 def fit_trees(rows: Sequence[Float], targets: Sequence[Float], settings: TreeSettings, seed: int) -> Trees:
@@ -103,8 +102,8 @@ def fit_trees(rows: Sequence[Float], targets: Sequence[Float], settings: TreeSet
         early_stopping=False,  # pyright: ignore[reportArgumentType]
         random_state=seed,
     )
-    weights = np.where(wanted > HAND_IOU, settings.hand_weight, 1.0)
-    model.fit(table, wanted, sample_weight=weights)
+    copies = np.where(wanted > HAND_IOU, settings.hand_copies, 1)
+    model.fit(table.repeat(copies, axis=0), wanted.repeat(copies))
     return export_trees(model)
 
 
@@ -135,36 +134,81 @@ def export_trees(model: object) -> Trees:
     return Trees(feature, threshold, left, right, value, base, depth)
 
 
-def fit_regions(pictures: Iterable[BoxedPicture], bank: Bank, seed: int) -> Trees:
-    """Trees that predict the IoU of a proposal with the best hand box."""
-    stage, rng = ColourStage(), np.random.default_rng(seed)
-    rows, targets = [np.zeros((0, REGION_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
-    for picture in pictures:
-        described = _describe_picture(stage, picture, bank)
-        if described is None:
-            continue
-        kept = (described.overlaps > MIDDLING_IOU) | (rng.random(len(described.overlaps)) < KEPT_SHARE)
-        rows.append(described.numbers[kept])
-        targets.append(described.overlaps[kept])
-    return fit_trees(rows, targets, REGION_TREES, seed)
+@dataclass(frozen=True, slots=True, eq=False)
+class Glanced:
+    """A picture as the first look sees it, and the rows of its regions."""
+
+    picture: BoxedPicture
+    colour: ColourMap
+    scene: Scene
+    regions: Proposals
+    rows: Float
+
+    def overlaps(self) -> Float:
+        """float32 (n,): IoU of each region with the best hand, with its forearm or without it, whichever is more."""
+        found = overlaps_with(self.picture, self.colour, self.regions)
+        for number in range(len(self.regions)) if self.picture.boxes else ():
+            hand = without_forearms(self.regions, [number])
+            if len(hand):
+                found[number] = max(found[number], overlaps_with(self.picture, self.colour, hand)[0])
+        return found
 
 
-def fit_pairs(pictures: Iterable[BoxedPicture], regions: Trees, bank: Bank, seed: int) -> Trees:
-    """Trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than those that
-    `regions` were fitted on, whose scores would be too good; every hand in them must have its box."""
+def glance(pictures: Iterable[BoxedPicture], loops: Loops) -> Iterable[Glanced]:
+    """Every picture in which something is proposed."""
     stage = ColourStage()
+    for picture in pictures:
+        colour = stage.process(picture.image)
+        scene = Scene.of(colour, loops)
+        regions = whole_regions(scene.skin, distinct=loops.distinct)
+        if len(regions):
+            rows = cells.describe(scene.sums, regions, scene.size, loops.cells)
+            yield Glanced(picture, colour, scene, regions, rows)
+
+
+def fit_regions(
+    pictures: Callable[[], Iterable[BoxedPicture]], bank: Bank, loops: Loops, seed: int
+) -> tuple[Trees, Trees]:
+    """The trees of the first look, then those of the second, which learn what the first does not tell apart.
+
+    pictures: gives the same pictures each time.
+    """
+    rng = np.random.default_rng(seed)
+    rows, targets = [np.zeros((0, cells.COLUMNS), np.float32)], [np.zeros(0, np.float32)]
+    for one in glance(pictures(), loops):
+        overlaps = one.overlaps()
+        kept = (overlaps > MIDDLING_IOU) | (rng.random(len(overlaps)) < KEPT_SHARE)
+        rows.append(one.rows[kept])
+        targets.append(overlaps[kept])
+    first = fit_trees(rows, targets, GLANCE_TREES, seed)
+    flat = FlatTrees.of(first)
+    rows, targets = [np.zeros((0, REGION_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
+    for one in glance(pictures(), loops):
+        scores = flat.scores(one.rows, loops.walk)
+        seen, numbers = standing_out(one.scene, one.regions, one.rows, scores, loops)
+        rows.append(with_bank(numbers, seen, bank))
+        targets.append(overlaps_with(one.picture, one.colour, seen))
+    return first, fit_trees(rows, targets, REGION_TREES, seed)
+
+
+def fit_pairs(
+    pictures: Iterable[BoxedPicture], first: Trees, second: Trees, bank: Bank, loops: Loops, seed: int
+) -> ClassicalParts:
+    """All parts, with trees that predict the lower IoU of the two regions of a pair. `pictures` must be others than
+    those that the other trees were fitted on, whose scores would be too good; every hand in them must have its box."""
+    stage = ColourStage()
+    scorer = Scorer(first, second, bank, loops)
     rows, targets = [np.zeros((0, PAIR_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for picture in pictures:
-        described = _describe_picture(stage, picture, bank)
-        if described is None:
-            continue
-        scores = evaluate(regions, described.numbers)
-        kept, items = scored_candidates(described.colour, described.proposals, scores)
-        height, width = described.colour.picture.shape[:2]
-        pairs, numbers = pair_numbers(items, (width, height), None)
+        colour = stage.process(picture.image)
+        scene = Scene.of(colour, loops)
+        regions, scores = scorer.process(scene)
+        overlap = pairwise_iou(regions.boxes, regions.boxes)
+        kept, items = scored_candidates(colour, regions, scores, overlap)
+        pairs, numbers = pair_numbers(items, scene.size, None)
         rows.append(numbers)
-        targets.append(_lower_of_both(described.overlaps[kept], pairs))
-    return fit_trees(rows, targets, PAIR_TREES, seed)
+        targets.append(_lower_of_both(overlaps_with(picture, colour, regions)[kept], pairs))
+    return ClassicalParts(first, second, fit_trees(rows, targets, PAIR_TREES, seed), bank)
 
 
 def _lower_of_both(overlaps: Float, pairs: Sequence[tuple[int, int]]) -> Float:

@@ -1,0 +1,206 @@
+"""Loops over pixels, cells, boxes and nodes, to be compiled: what `PLAIN` of each stage computes, byte for byte.
+
+As Python they run too, some hundred times as slow; `features/compiled.py` has numba compile them. All numbers are whole
+up to the last division, so that the order in which they are added changes nothing.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from lightgesture.features.find.cells import (
+    CELLS,
+    CONTEXT_TENTHS,
+    DIRECTIONS,
+    GRADIENT_FLOOR,
+    LUMA_FLOOR,
+    PART,
+)
+from lightgesture.features.find.proposals import SAME_HUNDREDTHS
+from lightgesture.features.skin_map import FINE, SHARE_BITS
+
+# Numba has no types that a type checker knows.
+Array = Any
+
+COUNT = CELLS * CELLS
+STEP_UNIT = 10 * CELLS
+FIRST_STEP = 5 * CELLS - CELLS * CONTEXT_TENTHS // 2
+
+
+def red(picture: Array, share: int) -> Array:
+    """See `skin_map.SkinLoops`."""
+    height, width = picture.shape[:2]
+    found = np.empty((height, width), np.uint16)
+    for y in range(height):
+        for x in range(width):
+            value = np.int64(picture[y, x, 2])
+            given_back = ((255 - value) * np.int64(picture[y, x, 1]) * share) >> SHARE_BITS
+            found[y, x] = value * FINE + given_back
+    return found
+
+
+def redness(
+    picture: Array, compensated: Array, shift: int, blues: Array, greens: Array, reds: Array
+) -> Array:
+    """See `skin_map.SkinLoops`."""
+    height, width = compensated.shape
+    across = np.empty((height, width), np.int32)
+    line = np.empty(width, np.int32)
+    for y in range(height):
+        for x in range(width):
+            line[x] = np.int32(
+                reds[compensated[y, x] >> shift] + blues[picture[y, x, 0]] + greens[picture[y, x, 1]]
+            )
+        # At the rim the blur sees the pixel on the other side twice, as OpenCV's does.
+        if width == 1:
+            across[y, 0] = 4 * line[0]
+            continue
+        across[y, 0] = 2 * line[0] + 2 * line[1]
+        across[y, width - 1] = 2 * line[width - 1] + 2 * line[width - 2]
+        for x in range(1, width - 1):
+            across[y, x] = line[x - 1] + 2 * line[x] + line[x + 1]
+    found = np.empty((height, width), np.uint16)
+    for y in range(height):
+        above = abs(y - 1) if height > 1 else 0
+        below = y + 1 if y + 1 < height else max(height - 2, 0)
+        for x in range(width):
+            found[y, x] = (across[above, x] + 2 * across[y, x] + across[below, x]) >> 4
+    return found
+
+
+def counts(values: Array, lowest: int, highest: int, shift: int) -> Array:
+    """See `skin_map.SkinLoops`."""
+    found = np.zeros(((highest - lowest) >> shift) + 1, np.int64)
+    for y in range(values.shape[0]):
+        for x in range(values.shape[1]):
+            found[(np.int64(values[y, x]) - lowest) >> shift] += 1
+    return found
+
+
+def look_up(values: Array, lowest: int, shift: int, levels: Array) -> Array:
+    """See `skin_map.SkinLoops`."""
+    found = np.empty(values.shape, np.uint8)
+    for y in range(values.shape[0]):
+        for x in range(values.shape[1]):
+            found[y, x] = levels[(np.int64(values[y, x]) - lowest) >> shift]
+    return found
+
+
+def sums(luma: Array, skin: Array, dx: Array, dy: Array) -> Array:
+    """See `cells.CellLoops`."""
+    height, width = luma.shape
+    found = np.zeros((2 + DIRECTIONS, height + 1, width + 1), np.int32)
+    for y in range(height):
+        lumas: Array = 0
+        skins: Array = 0
+        first: Array = 0
+        second: Array = 0
+        third: Array = 0
+        fourth: Array = 0
+        for x in range(width):
+            lumas += np.int64(luma[y, x])
+            skins += np.int64(skin[y, x])
+            along_x, along_y = np.int64(dx[y, x]), np.int64(dy[y, x])
+            strength = np.sqrt(np.float32(along_x * along_x + along_y * along_y)) * np.float32(0.25)
+            magnitude = np.int64(min(strength, np.float32(255.0)))
+            wide, tall = abs(along_x), abs(along_y)
+            if 29 * tall < 12 * wide:
+                first += magnitude
+            elif 29 * wide < 12 * tall:
+                third += magnitude
+            elif (along_x ^ along_y) >= 0:
+                second += magnitude
+            else:
+                fourth += magnitude
+            found[0, y + 1, x + 1] = found[0, y, x + 1] + lumas
+            found[1, y + 1, x + 1] = found[1, y, x + 1] + skins
+            found[2, y + 1, x + 1] = found[2, y, x + 1] + first
+            found[3, y + 1, x + 1] = found[3, y, x + 1] + second
+            found[4, y + 1, x + 1] = found[4, y, x + 1] + third
+            found[5, y + 1, x + 1] = found[5, y, x + 1] + fourth
+    return found
+
+
+def cells(summed: Array, boxes: Array) -> Array:
+    """See `cells.CellLoops`."""
+    planes, height, width = summed.shape
+    found = np.empty((len(boxes), (3 + DIRECTIONS) * COUNT), np.float32)
+    means = np.empty((3 + DIRECTIONS, COUNT), np.int64)
+    columns, rows = np.empty(CELLS + 1, np.int64), np.empty(CELLS + 1, np.int64)
+    for index in range(len(boxes)):
+        for k in range(CELLS + 1):
+            step = k * CONTEXT_TENTHS + FIRST_STEP
+            column = (STEP_UNIT * boxes[index, 0] + boxes[index, 2] * step + STEP_UNIT // 2) // STEP_UNIT
+            row = (STEP_UNIT * boxes[index, 1] + boxes[index, 3] * step + STEP_UNIT // 2) // STEP_UNIT
+            columns[k] = min(max(column, 0), width - 1)
+            rows[k] = min(max(row, 0), height - 1)
+        for i in range(CELLS):
+            for j in range(CELLS):
+                x0, x1, y0, y1 = columns[j], columns[j + 1], rows[i], rows[i + 1]
+                area = (x1 - x0) * (y1 - y0)
+                half, divisor = area // 2, max(area, 1)
+                cell = i * CELLS + j
+                strength = 0
+                for plane in range(planes):
+                    total = np.int64(summed[plane, y1, x1]) - summed[plane, y1, x0]
+                    total += np.int64(summed[plane, y0, x0]) - summed[plane, y0, x1]
+                    mean = (total * PART + half) // divisor
+                    if plane < 2:
+                        means[plane, cell] = mean
+                    else:
+                        means[plane + 1, cell] = mean
+                        strength += total
+                means[2, cell] = (strength * PART + half) // divisor
+        total, squares, strengths = 0, 0, 0
+        for cell in range(COUNT):
+            total += means[0, cell]
+            squares += means[0, cell] * means[0, cell]
+            strengths += means[2, cell]
+        spread = np.sqrt(np.float64(COUNT * squares - total * total)) + COUNT * LUMA_FLOOR
+        gradient = np.float64(strengths + COUNT * GRADIENT_FLOOR)
+        for cell in range(COUNT):
+            found[index, cell] = (COUNT * means[0, cell] - total) / spread
+            found[index, COUNT + cell] = means[1, cell] / np.float64(255 * PART)
+            for plane in range(2, 3 + DIRECTIONS):
+                found[index, plane * COUNT + cell] = (COUNT * means[plane, cell]) / gradient
+    return found
+
+
+def distinct(boxes: Array, most: int) -> Array:
+    """See `proposals.Distinct`."""
+    kept = np.empty(min(most, len(boxes)), np.int64)
+    count = 0
+    for index in range(len(boxes)):
+        if count == most:
+            break
+        x, y, width, height = boxes[index, 0], boxes[index, 1], boxes[index, 2], boxes[index, 3]
+        is_new = True
+        for place in range(count):
+            other = boxes[kept[place]]
+            across = min(x + width, other[0] + other[2]) - max(x, other[0])
+            down = min(y + height, other[1] + other[3]) - max(y, other[1])
+            both = max(across, 0) * max(down, 0)
+            areas = width * height + other[2] * other[3]
+            if (100 + SAME_HUNDREDTHS) * both > SAME_HUNDREDTHS * areas:
+                is_new = False
+                break
+        if is_new:
+            kept[count] = index
+            count += 1
+    return kept[:count].copy()
+
+
+def walk(
+    roots: Array, feature: Array, threshold: Array, children: Array, leaf: Array, depth: int, rows: Array
+) -> Array:
+    """See `trees.Walk`, with the fields of the trees one by one."""
+    # Row by row within a tree: the steps of several rows are under way at once, and none waits for a leaf.
+    found = np.zeros(len(rows), np.int64)
+    for tree in range(len(roots)):
+        root = roots[tree]
+        for row in range(len(rows)):
+            node = root
+            for _ in range(depth):
+                node = children[2 * node + np.int64(rows[row, feature[node]] > threshold[node])]
+            found[row] += leaf[node]
+    return found

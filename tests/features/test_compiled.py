@@ -1,0 +1,189 @@
+"""Compiled loops give the bytes of the plain ones, and nothing breaks where they cannot be had."""
+
+import json
+import logging
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lightgesture.actions.decode import SAMPLE
+from lightgesture.features import compiled
+from lightgesture.features.colour import ColourStage
+from lightgesture.features.find import cells
+from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
+from lightgesture.features.find.proposals import plain_distinct, whole_regions
+from lightgesture.features.find.selector_file import load_classical
+from lightgesture.features.skin_map import skin_map
+from lightgesture.sources import open_source
+
+
+@pytest.fixture(name="fast", scope="module")
+def _fast(tmp_path_factory):
+    numba = pytest.importorskip("numba", reason="needs the extra fast")
+    return compiled.compiled_loops(numba, compiled.cache_folder())
+
+
+def _textured(seed, height, width, light):
+    rng = np.random.default_rng(seed)
+    coarse = rng.integers(0, 256, (5, 6, 3)).astype(np.float32)
+    picture = cv2.resize(coarse, (width, height)).reshape(height, width, 3) * light
+    return np.clip(picture + rng.normal(0, 4, picture.shape), 0, 255).astype(np.uint8)
+
+
+def _assert_same_candidates(one, other):
+    assert len(one.regions) == len(other.regions)
+    for mine, theirs in zip(one.regions, other.regions, strict=True):
+        assert (mine.box, mine.confidence, mine.alternatives) == (
+            theirs.box,
+            theirs.confidence,
+            theirs.alternatives,
+        )
+        assert mine.contour.tobytes() == theirs.contour.tobytes()
+    assert one.pairs.tobytes() == other.pairs.tobytes()
+
+
+@given(
+    seed=st.integers(0, 2**31),
+    height=st.integers(1, 130),
+    width=st.integers(1, 170),
+    light=st.floats(0.02, 1.5),
+)
+@settings(max_examples=40, deadline=None)
+def test_any_picture_gives_the_same_bytes(fast, seed, height, width, light):
+    picture = _textured(seed, height, width, light)
+    skin = skin_map(picture)
+    assert skin_map(picture, fast.skin).tobytes() == skin.tobytes()
+    sums = cells.channel_sums(picture, skin)
+    assert cells.channel_sums(picture, skin, fast.cells).tobytes() == sums.tobytes()
+    regions, same = whole_regions(skin), whole_regions(skin, distinct=fast.distinct)
+    assert regions.boxes.tobytes() == same.boxes.tobytes()
+    size = width, height
+    rows = cells.describe(sums, regions, size)
+    assert cells.describe(sums, regions, size, fast.cells).tobytes() == rows.tobytes()
+
+
+@given(
+    boxes=st.lists(
+        st.tuples(st.integers(-50, 300), st.integers(-50, 300), st.integers(1, 90), st.integers(1, 90)),
+        max_size=60,
+    ),
+    most=st.integers(1, 20),
+)
+@settings(max_examples=60, deadline=None)
+def test_any_boxes_are_parted_and_described_alike(fast, boxes, most):
+    table = np.array(boxes, np.int32).reshape(-1, 4)
+    np.testing.assert_array_equal(fast.distinct(table, most), plain_distinct(table, most))
+    picture = _textured(1, 120, 160, 1.0)
+    sums = cells.channel_sums(picture, skin_map(picture))
+    assert fast.cells.cells(sums, table).tobytes() == cells.PLAIN.cells(sums, table).tobytes()
+
+
+def test_frames_of_a_clip_give_the_same_candidates(fast):
+    parts = load_classical()
+    plain, quick = ClassicalSelector(parts), ClassicalSelector(parts, fast)
+    found = 0
+    with open_source(SAMPLE) as source:
+        for frame in source:
+            if frame.index % 12:
+                continue
+            colour = ColourStage().process(frame.image)
+            one = plain.process(colour)
+            _assert_same_candidates(one, quick.process(colour))
+            found += len(one.regions)
+    assert found > 10
+
+
+def test_read_only_frames_and_views_are_taken(fast):
+    picture = _textured(3, 100, 140, 1.0)
+    whole = ClassicalSelector(load_classical(), fast)
+    expected = whole.process(ColourStage().process(picture))
+    view = np.repeat(picture, 2, axis=1)[:, ::2]
+    frozen = picture.copy()
+    frozen.flags.writeable = False
+    for same in (view, frozen):
+        _assert_same_candidates(expected, whole.process(ColourStage().process(same)))
+
+
+def test_a_profile_of_colours_takes_the_place_of_the_map(fast):
+    colour = ColourStage().process(_textured(4, 120, 160, 1.0))
+    object.__setattr__(colour, "skin_of", lambda picture: np.ascontiguousarray(picture[..., 0]))
+    assert Scene.of(colour, fast).skin.tobytes() == colour.picture[..., 0].tobytes()
+
+
+@pytest.fixture(name="told")
+def _told(caplog):
+    compiled.best_loops.cache_clear()
+    with caplog.at_level(logging.WARNING, "lightgesture"):
+        yield caplog
+    compiled.best_loops.cache_clear()
+
+
+def _refuses(*_, **__):
+    raise TypeError("this version\nknows no such thing")
+
+
+def _numba_of_another_version():
+    return SimpleNamespace(
+        __version__="0.1", njit=_refuses, config=SimpleNamespace(DISABLE_JIT=0, CACHE_DIR="")
+    )
+
+
+def test_numba_of_another_version_gives_one_line_and_the_plain_loops(monkeypatch, told, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "numba", _numba_of_another_version())
+    assert compiled.best_loops() == Loops()
+    assert compiled.best_loops() == Loops()
+    (line,) = told.messages
+    assert "numba 0.1 does not serve" in line
+    assert "\n" not in line
+
+
+def test_a_cache_folder_that_cannot_be_written_gives_one_line_and_the_plain_loops(
+    monkeypatch, told, tmp_path
+):
+    (tmp_path / "lightgesture").write_text("a file where the folder should be")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "numba", _numba_of_another_version())
+    assert compiled.best_loops() == Loops()
+    (line,) = told.messages
+    assert "cannot be written" in line
+
+
+def test_without_numba_nothing_is_told(monkeypatch, told):
+    monkeypatch.setitem(sys.modules, "numba", None)
+    assert compiled.best_loops() == Loops()
+    assert not told.messages
+
+
+def test_a_variable_keeps_numba_out(monkeypatch, told):
+    monkeypatch.setenv(compiled.SWITCHED_OFF, "1")
+    monkeypatch.setitem(sys.modules, "numba", _numba_of_another_version())
+    assert compiled.best_loops() == Loops()
+    assert not told.messages
+
+
+def test_the_cache_lies_in_the_users_folder(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert compiled.cache_folder() == tmp_path / "lightgesture" / "numba"
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    assert compiled.cache_folder().is_absolute()
+
+
+def test_the_learned_choice_loads_no_numba():
+    code = (
+        "import json, sys\n"
+        "from lightgesture.features.find.selector import load_selector\n"
+        "load_selector('learned')\n"
+        "print(json.dumps('numba' in sys.modules))\n"
+    )
+    answer = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, env={**os.environ}
+    )
+    assert json.loads(answer.stdout) is False

@@ -127,6 +127,8 @@ class StreamDecoder:
             return decoder.decode(packet)
         except av.error.EOFError:
             decoder.flush_buffers()
+        except MemoryError:  # no damage of the frame, and the next one would fare no better
+            raise
         except (av.error.FFmpegError, ValueError):
             if packet is not None:
                 self._undecoded += 1

@@ -113,6 +113,8 @@ class VideoFile(Source):
 
         try:
             picture = next((one for one in self._pictures if one is not None), None)
+        except MemoryError:
+            raise
         except av.error.FFmpegError as error:
             raise InputError(f"{self.name}: cannot be read on ({error.strerror}); copy it again") from None
         return None if picture is None else self._frame(picture, last)
@@ -190,6 +192,8 @@ def _open(path: str) -> "InputContainer":
         return av.open(
             os.path.abspath(path), options={"protocol_whitelist": "file"}, metadata_errors="replace"
         )
+    except MemoryError:
+        raise
     except (av.error.FFmpegError, ValueError, UnicodeError):
         raise InputError(
             f"{path}: is no video that can be read, or is cut off; copy it again or convert it"

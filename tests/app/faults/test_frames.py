@@ -5,7 +5,7 @@ import random
 import pytest
 
 from lightgesture.fsm import Instruction
-from tests.faults.streams import FAULTS, Shown, half_decoded
+from tests.app.faults.streams import FAULTS, Shown, half_decoded
 
 SIGNED = "STOP HOVER 50 GO"
 MILD = ("doubled", "reordered")

@@ -6,7 +6,7 @@ from lightgesture.actions.decode import SAMPLE
 from lightgesture.pipeline import Pipeline
 from lightgesture.sources import open_source
 from lightgesture.watch import Watch
-from tests.faults.streams import Shown
+from tests.app.faults.streams import Shown
 
 RULES = ("frames", "seconds", "evidence", "sentence")
 

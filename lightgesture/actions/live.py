@@ -58,7 +58,7 @@ def run_live(
         loop.tell(record)
 
     sinks = [_make_printer(settings, source.name), *make_sinks(settings, tell, clock)]
-    debug = make_debug_pictures(settings, DEBUG_STEM)
+    debug = make_debug_pictures(settings, DEBUG_STEM, report)
     mailbox = Mailbox()
     pipeline = open_stream(for_stream(settings), source.name, debug, report)
     with ExitStack() as stack:

@@ -72,7 +72,7 @@ def _sync(file: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Put the names in a folder on the disk, where the system can: Windows opens no folder, some file systems refuse."""
+    """Put the names in a folder on the disk, where the system can: Windows opens no folder, some systems refuse."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:

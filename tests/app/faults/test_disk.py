@@ -10,10 +10,12 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
 from lightgesture.archive.folder import LOCK, MANIFEST
 from lightgesture.errors import ExitStatus, UsageError
+from lightgesture.results import DebugPictures
 from lightgesture.results.atomic import replacing, replacing_folder
 
 SMALL_BYTES = 16 * 1024
@@ -96,6 +98,30 @@ def test_a_slow_disk_changes_no_result(run, fake, make_video, tmp_path, monkeypa
     assert run("decode", video, "--out", tmp_path / "slow").out[:-1] == fast[:-1]
     names = {"a.jsonl", "a.csv", "a.vtt", "dives.csv", MANIFEST, LOCK}
     assert set(os.listdir(tmp_path / "slow")) == names == set(os.listdir(tmp_path / "fast"))
+
+
+def test_a_stream_goes_on_where_its_pictures_of_stages_fill_the_disk(mounted):
+    told = []
+    debug = DebugPictures(mounted / "live", told.append)
+    picture = np.random.default_rng(1).integers(0, 255, (48, 64, 3), np.uint8)
+    for index in range(6):
+        debug.select(float(index))
+        debug.write("mask", index, picture)
+    place = mounted / "live" / "mask-000001.png"
+    assert told == [
+        f"{place}: cannot be written (No space left on device); name another folder; "
+        "decoding goes on without pictures of the stages"
+    ]
+    assert os.listdir(mounted / "live") == ["mask-000000.png"]
+
+
+@pytest.mark.parametrize("tell", [None, print])
+def test_a_place_that_never_took_a_picture_of_a_stage_is_told_at_once(tmp_path, tell):
+    (tmp_path / "file").touch()
+    debug = DebugPictures(tmp_path / "file" / "live", tell)
+    debug.select(0.0)
+    with pytest.raises(UsageError, match="cannot be written"):
+        debug.write("mask", 0, np.zeros((4, 4, 3), np.uint8))
 
 
 @pytest.fixture

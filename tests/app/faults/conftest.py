@@ -1,5 +1,7 @@
 """A signed sentence, that of the bundled clip, and what each rule makes of it when something goes wrong."""
 
+from dataclasses import replace
+
 import pytest
 
 from lightgesture.actions.decode import SAMPLE
@@ -12,18 +14,23 @@ RULES = ("frames", "seconds", "evidence", "sentence")
 
 
 class Reader:
-    """Reads frames by a rule as `decode` and `live` do, by what was read in them once, or by their pictures."""
+    """Reads frames by a rule as `decode` and `live` do, by what was read in them once, or by their pictures.
+
+    frames: of the clip, small; whole: as they are.
+    """
 
     def __init__(self, rule, frames):
         self.pipeline = Pipeline(rule=rule)
         front = self.pipeline.front
-        self.frames = [Shown(time_s, image, front.process(image, time_s)) for time_s, image in frames]
+        self.whole = [Shown(time_s, image, front.process(image, time_s)) for time_s, image in frames]
+        # Of what was read already pictures are looked at for holes alone.
+        self.frames = [replace(frame, image=frame.image[::8, ::8].copy()) for frame in self.whole]
 
     def events(self, shown):
         """What becomes of frames whose signs are known."""
         decoder, watch, found = self.pipeline.decoder.for_stream(None), Watch(), []
         for index, frame in enumerate(shown):
-            if (hole := watch.look(frame.image[::8, ::8], frame.time_s)) is not None:
+            if (hole := watch.look(frame.image, frame.time_s)) is not None:
                 found += decoder.interrupt(hole, frame.time_s, index)
             found += decoder.step(frame.signs, frame.time_s, index)
         return found + decoder.finish()

@@ -42,6 +42,12 @@ class _Pace:
         """The usual interval, seconds; infinite where none is known."""
         return median(self._intervals) if self._intervals else math.inf
 
+    @property
+    def stands_still(self) -> bool:
+        """Whether it came so often since its time last went on that it should have been far later."""
+        missed_s = self.repeats * self.usual_s if self.repeats > STALL_INTERVALS else 0.0
+        return STALL_S <= missed_s < math.inf
+
     def is_late(self, time_s: float) -> bool:
         """Whether at this time far more than the usual interval has passed, and long enough for a whole sign."""
         if self.last_s is None:
@@ -90,11 +96,11 @@ class Watch:
     def _look_at_time(self, time_s: float) -> str | None:
         """Whether the camera stalled, or its clock did for so many frames that a sign may have been made in them."""
         pace = self._frames_come
-        last_s, is_late, before = pace.last_s, pace.is_late(time_s), pace.repeats
+        last_s, is_late, stood = pace.last_s, pace.is_late(time_s), pace.stands_still
         pace.note(time_s)
         if is_late:
             return f"no frame from {last_s:.2f} to {time_s:.2f} s"
-        if before * pace.usual_s < STALL_S <= pace.repeats * pace.usual_s < math.inf:
+        if pace.stands_still and not stood:
             return f"time stands still at {time_s:.2f} s: {pace.repeats} frames came with no later stamp"
         return None
 

@@ -21,7 +21,7 @@ from lightgesture.benchmarks.soak.sampling import (
     wrong,
 )
 from lightgesture.benchmarks.tables import Table
-from lightgesture.errors import ExitStatus
+from lightgesture.errors import ExitStatus, InputError
 
 JOBS: Final = 2
 VIDEOS: Final = 12
@@ -32,23 +32,25 @@ PROCESSES: Final = JOBS + 2
 
 
 def write_rounds(clip: Path, to: Path, rounds: int) -> None:
-    """A video of a clip again and again, with stamps that go on; nothing is coded anew."""
+    """A video of a clip again and again, with stamps that go on; nothing is coded anew. InputError: it has no clock."""
     import av
 
     with av.open(str(clip)) as source, av.open(str(to), "w") as out:
         shown = source.streams.video[0]
-        stream = out.add_stream_from_template(shown)
+        stream, rate, base = out.add_stream_from_template(shown), shown.average_rate, shown.time_base
         packets = [
-            (packet.pts, packet.dts, packet.is_keyframe, bytes(packet)) for packet in source.demux(shown)
+            (packet.pts, packet.dts, packet.is_keyframe, bytes(packet))
+            for packet in source.demux(shown)
+            if packet.size and packet.pts is not None and packet.dts is not None
         ]
-        packets = [one for one in packets if one[0] is not None and one[3]]
-        frame = round(1 / shown.average_rate / shown.time_base)
-        length = max(pts for pts, *_ in packets) + frame
+        if not rate or not base or not packets:
+            raise InputError(f"{clip}: has no clock; name another clip")
+        length = max(pts for pts, *_ in packets) + round(1 / rate / base)
         for turn in range(rounds):
             for pts, dts, is_key, content in packets:
                 packet = av.Packet(content)
                 packet.pts, packet.dts = pts + turn * length, dts + turn * length
-                packet.time_base, packet.is_keyframe, packet.stream = shown.time_base, is_key, stream
+                packet.time_base, packet.is_keyframe, packet.stream = base, is_key, stream
                 out.mux(packet)
 
 

@@ -22,6 +22,9 @@ USUAL: Final = 15
 BLANK_S: Final = 2.0
 """Seconds of frames of one value after which they are told: a decoder's or a camera's failure, a cap on the lens."""
 
+BLINK_S: Final = 0.25
+"""Seconds of frames of one value that are a hole when they end: a sign that is held on meanwhile would count twice."""
+
 BLANK_SPREAD: Final = 2
 """Largest difference of a channel within a frame that counts as one value, of 255: compression leaves so much."""
 
@@ -119,6 +122,9 @@ class Watch:
             return f"the picture stands still from {since_s:.2f} s on: all frames are the same"
         pace.note(time_s)
         self._is_frozen_told = False
+        blank_s = self._blank_since_s
+        if blank_s is not None and time_s - blank_s > BLINK_S and not self._is_told:
+            return f"nothing was shown from {blank_s:.2f} to {time_s:.2f} s"
         return (
             f"no new picture from {since_s:.2f} to {time_s:.2f} s" if is_late and not self._is_told else None
         )

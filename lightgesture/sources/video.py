@@ -84,7 +84,9 @@ class VideoFile(Source):
         start = container.start_time
         is_known = has_clock and start is not None
         self._clock = RecordingClock(start / _MICROSECONDS if is_known else None, self._period_s)
-        self._decoder = StreamDecoder(container, stream, lambda text: warn(f"{self.name}: {text}"))
+        # Not by way of `self`: in a circle all that FFmpeg holds would wait for Python's collection, megabytes a video.
+        name = self.name
+        self._decoder = StreamDecoder(container, stream, lambda text: warn(f"{name}: {text}"))
         self._pictures = self._decoder.pictures()
         self._has_clock, self._lost = has_clock, 0
         self._lost_at: int | None = None

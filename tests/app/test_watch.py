@@ -68,11 +68,18 @@ def test_pictures_that_always_last_are_shown_so_on_purpose():
     assert told((SEEN + np.uint8(time_s // 2), time_s) for time_s in times)[0] == []
 
 
-def test_nothing_for_more_than_a_second_is_a_hole_when_it_ends():
-    """It is told by itself after two; in one a sign may have been made."""
-    frames = [*changing(seconds(30)), *((BLACK, time_s) for time_s in seconds(45, start_s=1.0))]
-    holes, _ = told([*frames, *changing(seconds(30, start_s=2.5))])
-    assert holes == [(2.5, "no new picture from 0.97 to 2.50 s")]
+@pytest.mark.parametrize(("frames", "end"), [(45, "2.50"), (15, "1.50")])
+def test_nothing_for_a_moment_is_a_hole_when_it_ends(frames, end):
+    """It is told by itself after two seconds; in one a sign may have been made, in less one is counted twice."""
+    nothing = [(BLACK, time_s) for time_s in seconds(frames, start_s=1.0)]
+    after = changing(seconds(30, start_s=1.0 + frames / 30))
+    holes, _ = told([*changing(seconds(30)), *nothing, *after])
+    assert holes == [(float(end), f"nothing was shown from 1.00 to {end} s")]
+
+
+def test_a_few_frames_of_nothing_are_no_hole():
+    nothing = [(BLACK, time_s) for time_s in seconds(7, start_s=1.0)]
+    assert told([*changing(seconds(30)), *nothing, *changing(seconds(30, start_s=37 / 30))])[0] == []
 
 
 def test_a_clock_that_stands_still_while_frames_come_is_told_once():

@@ -36,10 +36,13 @@ def run_live(
     settings: DecodeSettings,
     listeners: Sequence[Listener] = (),
     heartbeat_s: float = HEARTBEAT_S,
+    clock: Callable[[], float] | None = None,
 ) -> ExitStatus:
     """Decode a stream, by its name or as it stands, until it ends for good, nobody takes the records any more, or a
     signal asks for the end.
 
+    clock: seconds since the start, which never run back, for a stream whose pictures come faster or slower than they
+    were taken; None: the computer's.
     OK, also after SIGTERM, for a service that is asked to stop has not failed; INTERRUPTED after Ctrl-C; SOME_FAILED
     if the reader of standard output went away and nobody else takes the records, the stream was given up, or not one
     picture could be decoded.
@@ -49,13 +52,13 @@ def run_live(
         refuse_missing_device(source)
         source = live_source(source, settings.source_options)
     report = make_report()
-    clock = make_clock()
+    clock = clock or make_clock()
 
     def tell(record: VehicleRecord) -> None:
         loop.tell(record)
 
     sinks = [_make_printer(settings, source.name), *make_sinks(settings, tell, clock)]
-    debug = make_debug_pictures(settings, DEBUG_STEM)
+    debug = make_debug_pictures(settings, DEBUG_STEM, report)
     mailbox = Mailbox()
     pipeline = open_stream(for_stream(settings), source.name, debug, report)
     with ExitStack() as stack:

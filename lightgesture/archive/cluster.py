@@ -4,6 +4,7 @@ The machines see inputs, models and the folder of results under the same paths, 
 same version of this package. A worker that dies is no loss: the scheduler gives its input to another.
 """
 
+import logging
 import os
 import threading
 import uuid
@@ -15,7 +16,7 @@ from lightgesture.archive.runner import Runner
 from lightgesture.archive.tasks import Advanced, Done, Hear, Message, Outcome, Task
 from lightgesture.config.settings import DecodeSettings, change_paths
 from lightgesture.console import messages_shown
-from lightgesture.errors import UsageError
+from lightgesture.errors import InputError, UsageError
 
 CONNECT_S = 10.0
 """Seconds that a scheduler has to answer, and one of its workers to be there."""
@@ -29,10 +30,11 @@ def run_on_cluster(
 ) -> None:
     """Decode the tasks on the workers of the scheduler at `address`.
 
-    UsageError: Dask is not there, no scheduler answers, or a worker met one.
+    UsageError: Dask is not there, no scheduler answers, or a worker met one. InputError: the scheduler was lost on the
+    way; what was heard of by then is done.
     """
     settings = _absolute(settings)
-    with _connect(address) as client:
+    with _logging_off(), _connect(address) as client, _loss_told(address):
         from dask.distributed import as_completed
 
         run = uuid.uuid4().hex
@@ -103,6 +105,31 @@ def _connect(address: str) -> Iterator[Any]:
         except TimeoutError:
             raise UsageError(f"--cluster: the scheduler at {address} has no worker; start one") from None
         yield client
+
+
+@contextmanager
+def _loss_told(address: str) -> Iterator[None]:
+    """InputError where the scheduler goes away meanwhile: Dask cancels all that was asked for then."""
+    from dask.distributed import CancelledError
+
+    try:
+        yield
+    except CancelledError:
+        raise InputError(
+            f"--cluster: the scheduler at {address} was lost; the results of finished inputs are kept: run again when "
+            "it is back"
+        ) from None
+
+
+@contextmanager
+def _logging_off() -> Iterator[None]:
+    """Dask logs how it tried to reach a scheduler that went away, some thirty lines; ours says the same in one."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logging.disable(before)
 
 
 def _absolute(settings: DecodeSettings) -> DecodeSettings:

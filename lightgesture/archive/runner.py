@@ -5,6 +5,7 @@ anything, keeps what was decoded: its records and its files end with a summary w
 input leaves no file.
 """
 
+import gc
 import time
 from collections.abc import Iterable
 from contextlib import ExitStack
@@ -64,6 +65,8 @@ class Runner:
         except Exception as error:
             # A stage, ours or one that was given, must not take the other inputs with it.
             outcome = Outcome("failed", f"{task.name}: {defect_of(error)}")
+        # Frames and decoders that hang in circles of references would wait for it through many videos.
+        gc.collect()
         return replace(outcome, seconds=time.perf_counter() - start)
 
     def _open_pipeline(self, task: Task, debug: DebugPictures | None, hear: Hear) -> Pipeline:

@@ -50,9 +50,11 @@ def open_pipeline(settings: DecodeSettings, source: str | None, debug: DebugPict
         raise UsageError(str(error)) from error
 
 
-def make_debug_pictures(settings: DecodeSettings, stem: str) -> DebugPictures | None:
-    """Where the pictures of the stages of one input go, None where the user wants none."""
-    return DebugPictures(Path(settings.debug_dir) / stem) if settings.debug_dir else None
+def make_debug_pictures(
+    settings: DecodeSettings, stem: str, tell: Callable[[str], None] | None = None
+) -> DebugPictures | None:
+    """Where the pictures of the stages of one input go, None where the user wants none. tell: see `DebugPictures`."""
+    return DebugPictures(Path(settings.debug_dir) / stem, tell) if settings.debug_dir else None
 
 
 def make_folder(path: str) -> None:

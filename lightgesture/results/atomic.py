@@ -17,8 +17,8 @@ def replacing(path: Path, suffix: str = "") -> Iterator[Path]:
 
     suffix: ending of the temporary name, for a writer that chooses its format by it. After an exception, an
     interruption included, the temporary file is gone and `path` is as it was. The content is on the disk before it has
-    its name, so that not even a loss of power leaves half of it. Missing folders are made. UsageError: the place
-    cannot be written.
+    its name, and the name before this returns, so that a loss of power leaves all of it or nothing, and takes away
+    nothing that was told to be there. Missing folders are made. UsageError: the place cannot be written.
     """
     temporary = _temporary(path, suffix)
     with _told(path):
@@ -27,6 +27,7 @@ def replacing(path: Path, suffix: str = "") -> Iterator[Path]:
             yield temporary
             _sync(temporary)
             os.replace(temporary, path)
+            _sync_folder(path.parent)
         finally:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
@@ -46,9 +47,13 @@ def replacing_folder(path: Path) -> Iterator[Path]:
             for file in temporary.rglob("*"):
                 if file.is_file():
                     _sync(file)
+                elif file.is_dir():
+                    _sync_folder(file)
+            _sync_folder(temporary)
             shutil.rmtree(path, ignore_errors=True)
             try:
                 os.replace(temporary, path)
+                _sync_folder(path.parent)
             except OSError as error:
                 if error.errno not in (errno.ENOTEMPTY, errno.EEXIST):
                     raise
@@ -64,6 +69,21 @@ def _temporary(path: Path, suffix: str = "") -> Path:
 def _sync(file: Path) -> None:
     with open(file, "r+b") as stream:
         os.fsync(stream.fileno())
+
+
+def _sync_folder(folder: Path) -> None:
+    """Put the names in a folder on the disk, where the system can: Windows opens no folder, some systems refuse."""
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError:
+        return
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP, errno.EBADF):
+            raise
+    finally:
+        os.close(handle)
 
 
 @contextmanager

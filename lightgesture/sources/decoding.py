@@ -138,12 +138,22 @@ class StreamDecoder:
             return decoder.decode(packet)
         except av.error.EOFError:
             decoder.flush_buffers()
+        except MemoryError:  # no damage of the frame, and the next one would fare no better
+            raise
+        except av.error.BlockingIOError:
+            if not decoder.is_open:
+                raise MemoryError("a decoder of videos gets no thread") from None
+            self._note_refused(packet)
         except (av.error.FFmpegError, ValueError):
-            if packet is not None:
-                self._undecoded += 1
-                self._next_stamp()
-                self._owed.discard(self._sent - 1)
+            self._note_refused(packet)
         return []
+
+    def _note_refused(self, packet: "Packet[VideoStream] | None") -> None:
+        """A packet came to nothing."""
+        if packet is not None:
+            self._undecoded += 1
+            self._next_stamp()
+            self._owed.discard(self._sent - 1)
 
     def _show(self, frame: "VideoFrame") -> Iterator[Picture]:
         if self._stream.time_base is not None:

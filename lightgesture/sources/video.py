@@ -85,7 +85,9 @@ class VideoFile(Source):
         start = container.start_time
         is_known = has_clock and start is not None
         self._clock = RecordingClock(start / _MICROSECONDS if is_known else None, self._period_s)
-        self._decoder = StreamDecoder(container, stream, lambda text: warn(f"{self.name}: {text}"))
+        # Not by way of `self`: in a circle all that FFmpeg holds would wait for Python's collection, megabytes a video.
+        name = self.name
+        self._decoder = StreamDecoder(container, stream, lambda text: warn(f"{name}: {text}"))
         self._pictures = self._decoder.pictures()
         self._has_clock, self._lost = has_clock, 0
         self._lost_at: int | None = None
@@ -114,6 +116,8 @@ class VideoFile(Source):
 
         try:
             picture = next((one for one in self._pictures if one is not None), None)
+        except MemoryError:
+            raise
         except av.error.FFmpegError as error:
             raise InputError(f"{self.name}: cannot be read on ({error.strerror}); copy it again") from None
         return None if picture is None else self._frame(picture, last)
@@ -191,6 +195,8 @@ def _open(path: str) -> "InputContainer":
         return av.open(
             os.path.abspath(path), options={"protocol_whitelist": "file"}, metadata_errors="replace"
         )
+    except MemoryError:
+        raise
     except (av.error.FFmpegError, ValueError, UnicodeError):
         raise InputError(
             f"{path}: is no video that can be read, or is cut off; copy it again or convert it"

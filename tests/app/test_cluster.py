@@ -2,6 +2,7 @@
 
 import json
 import os
+import socket
 import subprocess
 import sys
 import time
@@ -37,28 +38,37 @@ def decode(*arguments):
 
 
 @pytest.fixture
-def cluster(tmp_path):
-    """Address of the scheduler, and the processes of its two workers, which run in another folder."""
-    file = tmp_path / "scheduler.json"
+def dask(tmp_path):
+    """Starts a program of Dask in another folder."""
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
     processes = []
 
     def start(*arguments):
-        command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard"]
+        command = [sys.executable, "-m", "dask", *map(str, arguments), "--no-dashboard"]
         processes.append(
             subprocess.Popen(command, cwd=elsewhere, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         )
+        return processes[-1]
 
-    start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", file)
-    wait_for(file.exists)
-    address = json.loads(file.read_text())["address"]
-    for _ in range(2):
-        start("worker", address, "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
-    yield address, processes[1:]
+    yield start
     for process in processes:
         process.kill()
         process.wait()
+
+
+def start_worker(dask, address):
+    return dask("worker", address, "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+
+
+@pytest.fixture
+def cluster(dask, tmp_path):
+    """Address of the scheduler, and the processes of its two workers."""
+    file = tmp_path / "scheduler.json"
+    dask("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", file)
+    wait_for(file.exists)
+    address = json.loads(file.read_text())["address"]
+    return address, [start_worker(dask, address) for _ in range(2)]
 
 
 @pytest.mark.slow
@@ -86,6 +96,39 @@ def test_same_results_as_here_and_a_killed_workers_video_is_done_by_the_other(cl
     assert [line for line in out_there.splitlines() if "ms a frame" not in line] == [
         line for line in out_here.splitlines() if "ms a frame" not in line
     ]
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_lost_and_comes_back(dask, make_video, tmp_path):
+    """The run ends with a line, keeps what is finished, and goes on where a scheduler is there again."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    address, out = f"tcp://127.0.0.1:{port}", tmp_path / "out"
+    inputs = [make_video("first.avi", 20), make_video("second.avi", 2000)]
+    scheduler = dask("scheduler", "--host", "127.0.0.1", "--port", port)
+    worker = start_worker(dask, address)
+    run = decode(*inputs, "--out", out, "--cluster", address)
+    wait_for(lambda: (out / ".lightgesture.json").exists())  # the first is done and noted
+    scheduler.kill()
+    _, err = run.communicate(timeout=200)
+    worker.kill()
+    assert run.returncode == ExitStatus.SOME_FAILED
+    assert [line for line in err.splitlines() if "scheduler" in line] == [
+        f"lightgesture: --cluster: the scheduler at {address} was lost; the results of finished inputs are kept: "
+        "run again when it is back"
+    ]
+    assert "Traceback" not in err
+    dask("scheduler", "--host", "127.0.0.1", "--port", port)
+    start_worker(dask, address)
+    before = (out / "first.jsonl").stat().st_mtime_ns
+    inputs[1].unlink()
+    make_video("second.avi", 20)
+    run = decode(*inputs, "--out", out, "--cluster", address)
+    _, err = run.communicate(timeout=200)
+    assert run.returncode == ExitStatus.OK, err
+    assert "1 of 2 inputs done before" in err
+    assert (out / "first.jsonl").stat().st_mtime_ns == before
+    assert (out / "second.jsonl").exists()
 
 
 def test_no_scheduler_there(run, make_video, monkeypatch):

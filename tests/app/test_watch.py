@@ -42,6 +42,60 @@ def test_frames_that_were_dropped_here_and_there_are_no_stall():
     assert told((SEEN, time_s) for time_s in seconds(90) if round(time_s * 30) % 20 > 12)[0] == []
 
 
+def changing(times):
+    """A picture that is another one in each frame."""
+    return [(SEEN + np.uint8(number + 1), time_s) for number, time_s in enumerate(times)]
+
+
+def test_a_picture_that_stands_still_is_told_while_it_does_and_when_it_ends():
+    frozen = [(SEEN.copy(), time_s) for time_s in seconds(90, start_s=1.0)]
+    holes, watch = told([*changing(seconds(30)), *frozen, *changing(seconds(30, start_s=4.0))])
+    assert holes == [
+        (pytest.approx(2.033, abs=0.04), "the picture stands still from 1.00 s on: all frames are the same"),
+        (4.0, "no new picture from 1.00 to 4.00 s"),
+    ]
+    assert not watch.is_blank
+
+
+def test_a_picture_that_comes_again_for_less_than_a_second_is_none_that_stands_still():
+    frozen = [(SEEN.copy(), time_s) for time_s in seconds(29, start_s=1.0)]
+    assert told([*changing(seconds(30)), *frozen, *changing(seconds(30, start_s=59 / 30))])[0] == []
+
+
+def test_pictures_that_always_last_are_shown_so_on_purpose():
+    """As of still pictures that follow each other, two seconds each."""
+    times = seconds(60 * 20)
+    assert told((SEEN + np.uint8(time_s // 2), time_s) for time_s in times)[0] == []
+
+
+@pytest.mark.parametrize(("frames", "end"), [(45, "2.50"), (15, "1.50")])
+def test_nothing_for_a_moment_is_a_hole_when_it_ends(frames, end):
+    """It is told by itself after two seconds; in one a sign may have been made, in less one is counted twice."""
+    nothing = [(BLACK, time_s) for time_s in seconds(frames, start_s=1.0)]
+    after = changing(seconds(30, start_s=1.0 + frames / 30))
+    holes, _ = told([*changing(seconds(30)), *nothing, *after])
+    assert holes == [(float(end), f"nothing was shown from 1.00 to {end} s")]
+
+
+def test_a_few_frames_of_nothing_are_no_hole():
+    nothing = [(BLACK, time_s) for time_s in seconds(7, start_s=1.0)]
+    assert told([*changing(seconds(30)), *nothing, *changing(seconds(30, start_s=37 / 30))])[0] == []
+
+
+def test_a_clock_that_stands_still_while_frames_come_is_told_once():
+    times = [*seconds(30), *[1.0] * 90, *seconds(30, start_s=1.033)]
+    holes, _ = told(changing(times))
+    assert holes == [(1.0, "time stands still at 1.00 s: 31 frames came with no later stamp")]
+
+
+@pytest.mark.parametrize(
+    "stamps", [[0.0] * 200, [0.0, -5.0] * 100, [time_s for time_s in range(50) for _ in range(2)]]
+)
+def test_a_clock_that_never_went_or_goes_in_steps_is_no_hole(stamps):
+    """The rule by frames reads such a stream; those by time read nothing in it."""
+    assert told(changing(stamps))[0] == []
+
+
 @pytest.mark.parametrize("stamp", [math.nan, math.inf])
 def test_stamps_that_are_no_time_are_endured(stamp):
     assert told((SEEN, time_s) for time_s in [0.0, 0.1, stamp, 0.2, 0.3])[0] == []

@@ -1,8 +1,10 @@
 """Video files as cameras, phones and capture cards write them, whole and broken."""
 
+import gc
 import json
 import os
 import threading
+import weakref
 from contextlib import suppress
 from datetime import UTC, datetime
 
@@ -10,6 +12,7 @@ import av
 import numpy as np
 import pytest
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.sources import SourceOptions, open_source
 from lightgesture.sources.clock import RecordingClock, creation_time
@@ -403,3 +406,16 @@ def test_sources_of_several_threads(write_video):
     for thread in threads:
         thread.join()
     assert found == [20] * 3
+
+
+def test_a_video_that_was_read_is_given_back_at_once():
+    """Not when Python collects what hangs in circles: by then the decoders of many videos would fill the memory."""
+    gc.disable()
+    try:
+        with open_source(str(SAMPLE)) as source:
+            next(iter(source))
+        left = weakref.ref(source)
+        del source
+        assert left() is None
+    finally:
+        gc.enable()

@@ -24,7 +24,7 @@ from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.console import messages_shown, print_line, say
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.features.types import Image
-from lightgesture.fsm import Signs
+from lightgesture.fsm import Notice, Rejected, Signs
 from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.pipeline import Pipeline
 from lightgesture.records import Hand
@@ -106,7 +106,7 @@ def count(pipeline: Pipeline, stream: Stream) -> tuple[dict[str, Cell], Counter[
         for seen in piece:
             for event in decoder.step(seen.signs, index / FPS, index):
                 found[event.type] += 1
-                if event.type in ("rejected", "notice"):
+                if isinstance(event, (Rejected, Notice)):
                     reasons[f"{event.type}: {event.reason}"] += 1
             for hand in seen.hands:
                 tracks[hand.track] = tracks.get(hand.track, False) or hand.token is not None

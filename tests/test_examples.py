@@ -25,7 +25,7 @@ def test_decode_video(monkeypatch, capsys):
     module = load("decode_video")
     monkeypatch.setattr(sys, "argv", ["decode_video.py", str(SAMPLE)])
     module.main()
-    assert capsys.readouterr().out == "0.4 to 8.3 s: STOP HOVER 50 GO (97%)\n"
+    assert capsys.readouterr().out == "0.4 to 8.3 s: STOP HOVER 50 GO (98%)\n"
 
 
 def test_own_reader():

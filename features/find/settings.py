@@ -17,7 +17,7 @@ class SelectorSettings:
     """Least score of a region without a partner, 0 to 1."""
 
 
-CLASSICAL: Final = SelectorSettings()
+CLASSICAL: Final = SelectorSettings(pair_score=0.18, single_score=0.4)
 """For scores of the classical choice."""
 LEARNED: Final = SelectorSettings(pair_score=0.3, single_score=0.52)
 """For scores of locator and refiner."""

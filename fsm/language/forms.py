@@ -102,6 +102,11 @@ def split_carrier(word: str) -> tuple[str, int | None]:
     return (match[1], int(match[2])) if match else (word, None)
 
 
+def is_number(word: str) -> bool:
+    """Whether the word is a digit or carries a number."""
+    return is_digit(word) or split_carrier(word)[1] is not None
+
+
 def parse_form(kind: str, sentence: str, vocabulary: Vocabulary, confirm: bool = False) -> Form:
     """Read `A|B`, `[x]`, `{...}`, number slots and `NAME n`; FormError names the symbol that is wrong."""
     symbols = sentence.replace("{", " { ").replace("}", " } ").split()

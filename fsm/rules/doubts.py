@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from lightgesture.fsm.language.forms import is_digit, split_carrier
+from lightgesture.fsm.language.forms import is_number
 from lightgesture.fsm.rules.readings import Reading
 from lightgesture.fsm.rules.search import Search
 
@@ -45,6 +45,9 @@ CLEAR_SHARE: Final = 0.5
 MOST_CLEAR: Final = 0.6
 """What it needs at most: passages are never clear."""
 
+CONTESTED: Final = 0.25
+"""For how much of the time that a number was shown another one may be nearly as likely, 0 to 1, at caution 1."""
+
 MISFIT: Final = 5.0
 """How far a reading may fall behind the free loop within one word and the passage before it, in units of score, at
 caution 1."""
@@ -72,12 +75,8 @@ def find_doubt(search: Search, slot: int, reading: Reading, caution: float) -> D
 
 def is_weak(word: str, certainty: float, caution: float, *, opens: bool = False) -> bool:
     """Whether a sign was seen too badly for its word to be issued. opens: the word is the first one."""
-    least = START if opens else NUMBER if _is_number(word) else WEAK
+    least = START if opens else NUMBER if is_number(word) else WEAK
     return certainty < min(least * caution, MOST)
-
-
-def _is_number(word: str) -> bool:
-    return is_digit(word) or split_carrier(word)[1] is not None
 
 
 def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float) -> str | None:
@@ -89,17 +88,24 @@ def find_weak(certainties: Sequence[float], words: Sequence[str], caution: float
     for place, (word, certainty) in enumerate(seen):
         if is_weak(word, certainty, caution, opens=place == 0):
             return word
-    numbers = [(certainty, word) for word, certainty in seen if _is_number(word)]
+    numbers = [(certainty, word) for word, certainty in seen if is_number(word)]
     together = math.prod(certainty for certainty, _ in numbers)
     return min(numbers)[1] if together < min(NUMBER * caution, MOST) else None
 
 
 def _find_unclear(search: Search, reading: Reading, caution: float) -> Doubt | None:
-    """The first number that was clear only for a moment in the time around it."""
-    least = min(CLEAR_SHARE * caution, MOST_CLEAR)
-    for word, (clear_s, share) in zip(reading.words[1:], search.clarity.clear(reading.spoken), strict=False):
-        if _is_number(word) and clear_s < CLEAR_S * caution and share < least:
+    """The first number that was clear only for a moment in the time around it, or in which another one was seen."""
+    least, clarity, spoken = min(CLEAR_SHARE * caution, MOST_CLEAR), search.clarity, reading.spoken
+    for place, (clear_s, share) in enumerate(clarity.clear(spoken), start=1):
+        word = reading.words[place]
+        if not is_number(word):
+            continue
+        if clear_s < CLEAR_S * caution and share < least:
             return Doubt(reason="weak_sign", detail=f"{word} was not seen steadily; sign it again")
+        if clarity.contested(spoken[place], spoken[place + 1]) > CONTESTED / caution:
+            return Doubt(
+                reason="ambiguous", detail=f"{word} looked like another number at times; sign it again"
+            )
     return None
 
 

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from lightgesture.fsm.language.forms import is_digit
+from lightgesture.fsm.language.forms import is_digit, is_number
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.rules.beam import BEAM, SHORT_COST, Beam
 from lightgesture.fsm.rules.clarity import Clarity
@@ -61,6 +61,9 @@ class Search:
             self._inside[column] = tuple(dict.fromkeys((*self._inside.get(column, ()), *words)))
         self._idle_columns = np.array(sorted(self._idle), np.intp)
         self._inside_columns = np.array(sorted(self._inside), np.intp)
+        self._numbers = [
+            column for column, words in sorted(self._inside.items()) if any(map(is_number, words))
+        ]
         self.reset()
 
     def _columns(self, pairs: Mapping[tuple[str, str], str], words: set[str]) -> dict[int, tuple[str, ...]]:
@@ -75,7 +78,7 @@ class Search:
         """As at the start of a stream."""
         self.windows = Windows(self.scores.size, self.hold_s)
         self.loop = FreeLoop(self.scores.size)
-        self.clarity = Clarity()
+        self.clarity = Clarity(self._numbers)
         self.beam = Beam(self._join, self.windows, self.loop)
         self.standing = Standing(self._join, self.beam, self.windows, self.loop)
         self.is_wary = False

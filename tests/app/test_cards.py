@@ -23,6 +23,7 @@ IDS = {word: number for number, word in load_grammar().tags.words.items()}
 def picture(*cards, size=SIZE, side=64):
     """Cards, words or ids, beside each other on grey, the first at image left."""
     image = np.full((*size, 3), 128, np.uint8)
+    image[0] = 64  # frames of one value would be a hole
     for place, card in enumerate(cards):
         number = IDS.get(card, card)
         tag = cv2.aruco.generateImageMarker(dictionary("36h11"), number, side)

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import stat
 
 import pytest
 import webvtt
@@ -184,12 +185,17 @@ def test_a_folder_that_another_process_put_there_meanwhile_stays(tmp_path, monke
 
 def test_content_is_on_the_disk_before_it_has_its_name(tmp_path, monkeypatch):
     order = []
-    monkeypatch.setattr(os, "fsync", lambda descriptor: order.append(os.fstat(descriptor).st_size))
+
+    def synced(descriptor):
+        status = os.fstat(descriptor)
+        order.append("folder" if stat.S_ISDIR(status.st_mode) else status.st_size)
+
+    monkeypatch.setattr(os, "fsync", synced)
     monkeypatch.setattr(os, "replace", lambda source, target: order.append(target.name))
     with replacing(tmp_path / "a.bin", ".bin") as temporary:
         assert temporary.suffix == ".bin"
         temporary.write_bytes(b"12345")
-    assert order == [5, "a.bin"]
+    assert order == [5, "a.bin", "folder"]
 
 
 def test_long_names_can_be_written(tmp_path):

@@ -7,7 +7,8 @@ from lightgesture.fsm import Decoder, Sign, Signs
 from lightgesture.fsm.rules.clarity import MOST_RUNS, Clarity
 from lightgesture.fsm.rules.readings import Spoken
 
-DOUBTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.5, {"1": 0.5, "none": 0.3}))
+DOUBTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.6, {"none": 0.6, "1": 0.2}))
+CONTESTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.5, {"1": 0.5, "0": 0.45}))
 
 
 def of_pair(pair):
@@ -60,6 +61,15 @@ def test_a_number_that_was_clear_for_long_may_have_been_doubted_before_and_after
     assert outcome(grammar, sentence(0.8, 0.3), 30) == (["STOP HOVER 3 GO"], [])
 
 
+@pytest.mark.parametrize("rate", [10, 30, 60])
+def test_a_number_that_looked_like_another_one_at_times_is_not_believed(grammar, rate):
+    """A hand that held 1 was read as 2 for most of the time and as 1 in between: the instruction had another number."""
+    shown = sentence(0.5, 0.1)
+    contested = [*shown[:5], (CONTESTED, 0.4), (of_pair("ok,0"), 0.3), *shown[5:]]
+    told = [("ambiguous", "0 looked like another number at times; sign it again")]
+    assert outcome(grammar, contested, rate) == ([], told)
+
+
 def spoken(column, began, *, is_again=False):
     return Spoken("A", column, 0, began, 0.0, 0.0, began, began, is_again)
 
@@ -94,6 +104,15 @@ def test_a_repeated_sign_counts_from_its_repetition():
         clear(clarity.step, column, seconds)
     again = (spoken(0, 0.0), spoken(1, 3.0, is_again=True), spoken(2, 3.5))
     assert list(clarity.clear(again)) == [pytest.approx((0.5, 1.0))]
+
+
+def test_what_other_numbers_led_counts_against_a_number():
+    clarity = Clarity([1, 2, 3])
+    for column, seconds in [(0, 1.0), (1, 0.6), (2, 0.2), (1, 0.2), (0, 1.0)]:
+        clear(clarity.step, column, seconds)
+    assert clarity.contested(spoken(1, 1.0), spoken(0, 2.1)) == pytest.approx(0.2)
+    assert clarity.contested(spoken(3, 1.0), spoken(0, 2.0)) == pytest.approx(1.0)
+    assert clarity.contested(spoken(1, 5.0), spoken(0, 6.0)) == 0.0
 
 
 def test_a_sign_that_was_never_clear_has_no_share():

@@ -70,7 +70,9 @@ def test_a_frame_for_which_there_is_no_memory_is_not_taken_for_a_damaged_one(err
     def decode(packet):
         raise error
 
-    stream = SimpleNamespace(codec_context=SimpleNamespace(name="mpeg4", decode=decode, is_open=False))
+    stream = SimpleNamespace(
+        codec_context=SimpleNamespace(name="mpeg4", decode=decode, is_open=False, options={})
+    )
     decoder = StreamDecoder(SimpleNamespace(format=SimpleNamespace(name="mp4")), stream, print)
     with pytest.raises(MemoryError):
         decoder.decode(None)

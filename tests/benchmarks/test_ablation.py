@@ -31,7 +31,7 @@ from lightgesture.features.find.learned import Places
 from lightgesture.features.find.proposals import propose
 from lightgesture.features.find.selector import load_selector
 from lightgesture.features.find.selector_file import load_classical, load_learned
-from lightgesture.features.find.settings import CLASSICAL
+from lightgesture.features.find.settings import SelectorSettings
 from lightgesture.features.types import Candidates, HandRegion
 from lightgesture.sources import open_source
 from lightgesture.training.datasets import Label, Sample
@@ -102,9 +102,9 @@ def test_two_hands_go_together_as_well_as_the_worse(parts):
 
 def test_without_pairs_a_partner_helps_nobody():
     found = Candidates(HANDS, np.full((3, 3), 0.9, np.float32), (640, 480))
-    assert not without_pairs(CLASSICAL)(found).pairs.any()
+    assert not without_pairs(SelectorSettings())(found).pairs.any()
     surer = replace(found, regions=(HANDS[0], replace(HANDS[1], confidence=0.8)))
-    assert without_pairs(CLASSICAL)(surer).pairs[0, 1] == pytest.approx(0.8)
+    assert without_pairs(SelectorSettings())(surer).pairs[0, 1] == pytest.approx(0.8)
 
 
 def test_scores_other_than_the_trees(colour, parts):

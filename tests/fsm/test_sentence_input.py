@@ -95,9 +95,9 @@ def test_the_hands_of_two_divers_issue_only_what_both_halves_say(grammar):
     assert issued(events) == []
 
 
-def outcome(grammar, signed):
+def outcome(grammar, signed, caution=None):
     """What becomes of pairs, each with the probability of its right hand, held for 0.7 s."""
-    decoder, events, frame = Decoder(grammar, rule="sentence"), [], 0
+    decoder, events, frame = Decoder(grammar, rule="sentence", caution=caution), [], 0
     for pair, chance in signed:
         left, right = pair.split(",")
         signs = Signs(Sign(left, 0.98, {left: 0.98}), Sign(right, chance, {right: chance}))
@@ -136,6 +136,14 @@ def test_the_end_word_must_be_seen_well(grammar):
     signed = [("0,0", 0.98), ("5,5", 0.98)]
     assert outcome(grammar, [*signed, ("ok,ok", 0.65)])[:2] == (["STOP HOVER GO"], [])
     assert outcome(grammar, [*signed, ("ok,ok", 0.5)])[:2] == ([], ["weak_sign"])
+
+
+@pytest.mark.parametrize(
+    ("caution", "expected"), [(0.7, ["STOP HOVER GO"]), (1.0, ["STOP HOVER GO"]), (1.2, []), (3.0, [])]
+)
+def test_with_more_caution_the_end_word_must_be_seen_better(grammar, caution, expected):
+    signed = [("0,0", 0.98), ("5,5", 0.98), ("ok,ok", 0.65)]
+    assert outcome(grammar, signed, caution)[0] == expected
 
 
 def test_a_word_after_a_hardly_seen_first_one_is_not_said_to_open_nothing(grammar):

@@ -363,6 +363,15 @@ def test_the_readings_of_a_verdict_can_be_asked_for(diver):
     assert Decoder(diver.decoder.grammar).readings == ()
 
 
+@pytest.mark.parametrize(("digits", "cost"), [("5 AND 4", 0.0), ("5 4", 3.0), ("5 5", 0.0), ("5 4 3", 3.0)])
+def test_the_first_digit_without_the_joining_word_costs_something_unless_it_repeats_one(diver, digits, cost):
+    diver.words("STOP HOVER 5 GO")
+    alone = diver.decoder.readings[0].behind
+    diver.pause()
+    diver.words(f"STOP HOVER {digits} GO")
+    assert diver.decoder.readings[0].behind - alone == pytest.approx(cost, abs=1.5)
+
+
 class TestControl:
     @pytest.fixture
     def diver(self):

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from lightgesture.features.types import Image
+from lightgesture.repeats import LastFrame
 
 STALL_S: Final = 1.0
 """Seconds between two frames that are a hole, for a whole sign may have been made in them"""
@@ -71,7 +72,7 @@ class Watch:
 
     def __init__(self) -> None:
         self._frames_come, self._pictures_change = _Pace(), _Pace()
-        self._last_image: Image | None = None
+        self._last = LastFrame()
         self._is_frozen_told = False
         self._blank_since_s: float | None = None
         self._is_told = False
@@ -113,9 +114,9 @@ class Watch:
         It is told while it lasts, and once more when it ends: what was read of a picture that stood still is no sign.
         Frames of nothing are told by themselves after a while, and then nothing is open when they end.
         """
-        pace, last_image, self._last_image = self._pictures_change, self._last_image, image
+        pace, is_same = self._pictures_change, self._last.equals(image)
         since_s, is_late = pace.last_s, pace.is_late(time_s)
-        if is_blank or (last_image is not None and _is_same(image, last_image)):
+        if is_blank or is_same:
             if not is_late or is_blank or self._is_frozen_told:
                 return None
             self._is_frozen_told = True
@@ -143,14 +144,6 @@ class Watch:
             return None
         self._is_told = True
         return f"frames show nothing from {self._blank_since_s:.2f} s on: all pixels are the same"
-
-
-def _is_same(image: Image, other: Image) -> bool:
-    """Whether two frames are equal in every pixel."""
-    if image is other:
-        return False  # a buffer that is filled anew, for all that can be known
-    parts = ((image[::SPARSE, ::SPARSE], other[::SPARSE, ::SPARSE]), (image, other))
-    return image.shape == other.shape and all(np.array_equal(one, another) for one, another in parts)
 
 
 def _is_blank(image: Image) -> bool:

@@ -8,7 +8,7 @@ class Spoken:
     """A word of a reading: when its sign began, and how well it was seen.
 
     sure: geometric mean of the probabilities of the less sure hand over the best window of the least length, 0 to 1;
-    of the last word, which grows, see `Search.certainties`. behind: how far the reading was behind the free loop when
+    of the last word, which grows, see `Standing.certainties`. behind: how far the reading was behind the free loop when
     the word began. fine: what the word cost for its place alone.
     """
 

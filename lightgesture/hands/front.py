@@ -20,8 +20,8 @@ from lightgesture.hands.hidden import HiddenHands
 from lightgesture.hands.memory import ReadingMemory
 from lightgesture.hands.pictures import draw_colour, draw_hands, draw_regions, draw_tracks
 from lightgesture.hands.reading import HandInView
-from lightgesture.hands.repeats import LastFrame
 from lightgesture.records import Hand
+from lightgesture.repeats import LastFrame
 
 HIDDEN: Final = Sign(None, 0.0, reason="occluded")
 """A hand that something hides where it is held."""

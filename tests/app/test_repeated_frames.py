@@ -8,8 +8,8 @@ from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.find.selector import load_selector
 from lightgesture.front_end import StageClock
 from lightgesture.hands import HandReader, ReadingStage
-from lightgesture.hands.repeats import LastFrame
 from lightgesture.models import load_classifier
+from lightgesture.repeats import LastFrame
 from lightgesture.sources import open_source
 
 

@@ -6,30 +6,11 @@ import time
 
 import pytest
 
-from lightgesture.web import WebListener, door, head, server
+from lightgesture.web import door
 from lightgesture.web.door import ADDRESSES, BURST, OPEN, REQUESTS_PER_S, Door, Rates, is_loopback, token_for
 
 TOKEN = "under-the-water"
 ANY = "0.0.0.0"
-
-
-@pytest.fixture
-def serve(monkeypatch):
-    """Starts pages, and stops them after the test; limits: constants of the server or the head, in small letters."""
-    started = []
-
-    def start(host="127.0.0.1", token=None, **limits):
-        for name, value in limits.items():
-            place = head if hasattr(head, name.upper()) else server
-            monkeypatch.setattr(place, name.upper(), value)
-        page = WebListener(0, host, token=token)
-        page.start()
-        started.append(page)
-        return page
-
-    yield start
-    for page in started:
-        page.stop()
 
 
 def port_of(page):

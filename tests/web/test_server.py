@@ -14,7 +14,7 @@ from lightgesture.errors import UsageError
 from lightgesture.fsm import Instruction, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand, SummaryRecord, VehicleRecord
-from lightgesture.web import WebListener, board, head, listener, server
+from lightgesture.web import WebListener
 
 AT = {"source": "dive.mp4", "frame": 3, "time_s": 0.1}
 HAND = Hand(side="right", token="5", confidence=0.98, box=(8, 8, 20, 20), track=1, reason=None)
@@ -47,27 +47,6 @@ def instruction(text="STOP HOVER GO"):
 
 def rejected(text="STOP EXEC 5 GO", detail="no program 5"):
     return Rejected(reason="unknown_program", text=text, detail=detail, **AT)
-
-
-@pytest.fixture
-def serve(monkeypatch):
-    """Starts pages, and stops them after the test; limits: constants of the server, in small letters."""
-    started = []
-
-    def start(host="127.0.0.1", draw=None, **limits):
-        for name, value in {"beat_s": 0.2, **limits}.items():
-            place = next(
-                module for module in (server, listener, board, head) if hasattr(module, name.upper())
-            )
-            monkeypatch.setattr(place, name.upper(), value)
-        page = WebListener(0, host, draw)
-        page.start()
-        started.append(page)
-        return page
-
-    yield start
-    for page in started:
-        page.stop()
 
 
 def port_of(listener):

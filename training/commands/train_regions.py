@@ -63,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
     """Train and write the selector and its card."""
     from lightgesture.features.find.selector_file import SelectorError
     from lightgesture.training.pool.left_out import left_out
-    from lightgesture.training.regions.train import RegionTraining, train_classical, train_regions
+    from lightgesture.training.regions.nets import RegionTraining
+    from lightgesture.training.regions.train import train_classical, train_regions
     from lightgesture.training.time_left import NeverSilent
 
     out = model_path(args.out)

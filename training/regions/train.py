@@ -1,12 +1,10 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
-import hashlib
 import json
 import time
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import cv2
 import numpy as np
@@ -14,16 +12,15 @@ import numpy as np
 from lightgesture.errors import InputError
 from lightgesture.features.compiled import best_loops
 from lightgesture.features.find.learned import Places
-from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, SelectorError, load_learned
-from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, load_learned
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.pictures.boxed import BoxedPicture
-from lightgesture.training.pictures.real_divers import RealDivers
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
+from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import (
     NEGATIVE_SETS,
     Material,
@@ -38,12 +35,6 @@ from lightgesture.training.regions.trees import (
     look,
 )
 
-if TYPE_CHECKING:
-    from lightgesture.training.nets.net_training import Precision
-
-Progress = Callable[[str], None]
-
-
 ONE_IN: Final = 8
 """Of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to people and
 water they have not seen."""
@@ -57,30 +48,6 @@ CLASSICAL_COMPOSED: Final = 2000
 """Composed pictures for them; real ones teach them more."""
 PAIR_SHARE: Final = 0.4
 """Of all pictures for trees, those for pairs."""
-
-
-@dataclass(frozen=True, slots=True)
-class RegionTraining:
-    """How long the nets of the selector are trained."""
-
-    locator_steps: int = 10000
-    """Steps of the optimiser, 1 or more."""
-    refiner_steps: int = 8000
-    """Likewise."""
-    precision: "Precision" = "float32"
-    """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
-    start: Path | None = None
-    """Selector whose nets go on learning; None to begin with random weights."""
-
-    @property
-    def origin(self) -> str | None:
-        """SHA-256 of that file. Raises SelectorError."""
-        if self.start is None:
-            return None
-        try:
-            return hashlib.sha256(self.start.read_bytes()).hexdigest()
-        except OSError as error:
-            raise SelectorError(f"{self.start}: cannot be read ({error.strerror})") from error
 
 
 def train_regions(
@@ -109,7 +76,7 @@ def train_regions(
     progress("composing pictures")
     composed = _compose(for_nets, COMPOSED, seed + 1, jobs, folder / "composed.npy")
     unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
-    learned = _learned(for_nets, composed, folder, seed, settings, progress)
+    learned = learn_nets(for_nets, composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
     first, second = _tree_pictures(for_trees, unseen, seed)
     places = fit_places(look(first, Places(*learned)), seed)
@@ -161,36 +128,6 @@ def train_classical(
 def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
     ingredients = Ingredients(material.hands, material.waters(), material.rooms())
     return compose_pool(ingredients, count, seed, jobs, path)
-
-
-def _learned(
-    material: Material,
-    composed: list[BoxedPicture],
-    folder: Path,
-    seed: int,
-    settings: RegionTraining,
-    progress: Progress,
-) -> tuple[IntegerNetwork, IntegerNetwork]:
-    """Locator and refiner."""
-    from lightgesture.training.nets.locator import train_locator
-    from lightgesture.training.nets.locator_samples import LocatorSamples
-    from lightgesture.training.nets.refiner import train_refiner
-    from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
-
-    divers = RealDivers(material.divers, material.hands) if material.divers else None
-    begun = None if settings.start is None else load_learned(settings.start)
-    first, second = (begun.locator, begun.refiner) if begun else (None, None)
-    steps, precision = settings.locator_steps, settings.precision
-    samples = LocatorSamples(material.frames, material.empty, composed, divers)
-    locator = train_locator(samples, steps, precision, first, seed, folder / "locator.pt", progress)
-    progress("searching for what the locator mistakes")
-    frames, empty, hard = (
-        hard_regions(part, locator) for part in (material.frames, material.empty, composed)
-    )
-    mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
-    windows = RefinerSamples(frames, empty, hard, divers, mistaken)
-    steps = settings.refiner_steps
-    return locator, train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)
 
 
 def _tree_pictures(

@@ -1,0 +1,72 @@
+"""The nets of the learned choice: the locator, then the refiner, which learns from what the locator mistakes."""
+
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from lightgesture.features.find.selector_file import SelectorError, load_learned
+from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.training.pictures.boxed import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDivers
+from lightgesture.training.regions.region_pictures import Material
+
+if TYPE_CHECKING:
+    from lightgesture.training.nets.net_training import Precision
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class RegionTraining:
+    """How long the nets of the selector are trained."""
+
+    locator_steps: int = 10000
+    """Steps of the optimiser, 1 or more."""
+    refiner_steps: int = 8000
+    """Likewise."""
+    precision: "Precision" = "float32"
+    """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
+    start: Path | None = None
+    """Selector whose nets go on learning; None to begin with random weights."""
+
+    @property
+    def origin(self) -> str | None:
+        """SHA-256 of that file. Raises SelectorError."""
+        if self.start is None:
+            return None
+        try:
+            return hashlib.sha256(self.start.read_bytes()).hexdigest()
+        except OSError as error:
+            raise SelectorError(f"{self.start}: cannot be read ({error.strerror})") from error
+
+
+def learn_nets(
+    material: Material,
+    composed: list[BoxedPicture],
+    folder: Path,
+    seed: int,
+    settings: RegionTraining,
+    progress: Progress,
+) -> tuple[IntegerNetwork, IntegerNetwork]:
+    """Locator and refiner, learnt from the material and from composed pictures. What is done lies in `folder`."""
+    from lightgesture.training.nets.locator import train_locator
+    from lightgesture.training.nets.locator_samples import LocatorSamples
+    from lightgesture.training.nets.refiner import train_refiner
+    from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
+
+    divers = RealDivers(material.divers, material.hands) if material.divers else None
+    begun = None if settings.start is None else load_learned(settings.start)
+    first, second = (begun.locator, begun.refiner) if begun else (None, None)
+    steps, precision = settings.locator_steps, settings.precision
+    samples = LocatorSamples(material.frames, material.empty, composed, divers)
+    locator = train_locator(samples, steps, precision, first, seed, folder / "locator.pt", progress)
+    progress("searching for what the locator mistakes")
+    frames, empty, hard = (
+        hard_regions(part, locator) for part in (material.frames, material.empty, composed)
+    )
+    mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
+    windows = RefinerSamples(frames, empty, hard, divers, mistaken)
+    steps = settings.refiner_steps
+    return locator, train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)

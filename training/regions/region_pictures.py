@@ -36,6 +36,13 @@ NEGATIVE_SETS: Final = ("funie", "rov25", "u45")
 """Sets of `negatives` that are trained on; all others stay unseen for the report."""
 DIVERS: Final = "divers/boxes.csv"
 """Table of real divers within the data folder; they are left out where there is none."""
+ONE_IN: Final = 8
+"""Of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to people and
+water they have not seen."""
+COMPOSED: Final = 12000
+"""Pictures composed for the nets and the classical trees of regions."""
+UNSEEN: Final = 2000
+"""Those composed of what is kept from the nets."""
 NEVER: Final = frozenset({"emre_drone"})
 """Sources of `hands` that are not cut out: their people are those of `frames/drone`, whose figures would not count
 otherwise."""

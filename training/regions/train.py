@@ -3,31 +3,37 @@
 import json
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
-import cv2
 import numpy as np
 
 from lightgesture.errors import InputError
 from lightgesture.features.compiled import best_loops
 from lightgesture.features.find.learned import Places
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, load_learned
+from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector
-from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
+from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
+from lightgesture.training.regions.card import has_seen_dives, write_card
+from lightgesture.training.regions.dive_folds import DiveFold, dive_folds
 from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import (
-    NEGATIVE_SETS,
+    COMPOSED,
+    ONE_IN,
+    UNSEEN,
     Material,
     read_material,
     variants,
 )
 from lightgesture.training.regions.trees import (
+    Seen,
     fit_pairs,
     fit_place_pairs,
     fit_places,
@@ -35,13 +41,6 @@ from lightgesture.training.regions.trees import (
     look,
 )
 
-ONE_IN: Final = 8
-"""Of so many people, one is kept from the nets: the trees that weigh the nets are fitted on what nets do to people and
-water they have not seen."""
-COMPOSED: Final = 12000
-"""Pictures composed for the nets and the classical trees of regions."""
-UNSEEN: Final = 2000
-"""Those composed of what is kept from the nets."""
 CLASSICAL_VIEWS: Final = 2
 """Views of a whole frame, under water, in the dark or mirrored, from which the classical trees learn beside itself."""
 CLASSICAL_COMPOSED: Final = 2000
@@ -66,6 +65,11 @@ def train_regions(
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
+    if settings.dive_folds and has_seen_dives(settings.start):
+        raise InputError(
+            f"{settings.start}: its nets learnt from real divers, so no fold of these can be kept from them; "
+            "start from one without, from nothing, or with --dive-folds 0"
+        )
     told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
     folder = checkpoint_folder(out, {"seed": seed, **told})
     progress("reading whole frames and cutting out hands")
@@ -76,15 +80,19 @@ def train_regions(
     progress("composing pictures")
     composed = _compose(for_nets, COMPOSED, seed + 1, jobs, folder / "composed.npy")
     unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
-    learned = learn_nets(for_nets, composed, folder, seed, settings, progress)
+    folds: list[DiveFold] = []
+    if settings.dive_folds:
+        # A fold of each dive is kept from nets of its own, so these may learn from all.
+        for_nets, for_trees = replace(for_nets, divers=material.divers), replace(for_trees, divers=[])
+        folds = list(dive_folds(for_nets, composed, folder, seed, settings, progress))
+    nets = learn_nets(for_nets, composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
     first, second = _tree_pictures(for_trees, unseen, seed)
-    places = fit_places(look(first, Places(*learned)), seed)
-    pairs = fit_place_pairs(look(second, Places(*learned)), places, seed)
+    learned = weighed(nets, (first, second), folds, seed)
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
-    write_selector(classical, LearnedParts(*learned, places, pairs), out)
-    _write_card(out, seed, without, settings, material, time.monotonic() - started)
+    write_selector(classical, learned, out)
+    write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 
 def train_classical(
@@ -128,6 +136,27 @@ def train_classical(
 def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
     ingredients = Ingredients(material.hands, material.waters(), material.rooms())
     return compose_pool(ingredients, count, seed, jobs, path)
+
+
+def weighed(
+    nets: tuple[IntegerNetwork, IntegerNetwork],
+    pictures: tuple[Sequence[BoxedPicture], Sequence[BoxedPicture]],
+    folds: Sequence[DiveFold],
+    seed: int,
+) -> LearnedParts:
+    """The nets with the trees that weigh them.
+
+    pictures: which the nets have not seen, for the trees of places and for those of pairs. folds: of the dives.
+    """
+    rng = np.random.default_rng(seed)
+    seen: tuple[list[Seen], list[Seen]] = [], []
+    for part, own in zip(seen, pictures, strict=True):
+        part.extend(look(own, Places(*nets)))
+    for fold in folds:
+        for one in fold.seen():
+            seen[rng.random() < PAIR_SHARE].append(one)
+    places = fit_places(seen[0], seed)
+    return LearnedParts(*nets, places, fit_place_pairs(seen[1], places, seed))
 
 
 def _tree_pictures(
@@ -176,46 +205,3 @@ def classical_pictures(
     yield from material.empty
     yield from (one.picture for one in material.divers if not one.picture.ignored)
     yield from composed[:CLASSICAL_COMPOSED]
-
-
-def _write_card(
-    out: Path,
-    seed: int,
-    without: LeftOut,
-    settings: RegionTraining,
-    material: Material,
-    seconds: float,
-) -> None:
-    import sklearn
-    import torch
-
-    card = {
-        "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
-        "data": {
-            "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
-            "hands cut out of hands/train": len(material.hands),
-            "underwater frames without a hand": len(material.empty),
-            "real divers (divers)": len(material.divers),
-            "composed pictures": COMPOSED + UNSEEN,
-            "sets of negatives used": list(NEGATIVE_SETS),
-            "kept from the nets, for the trees": f"one in {ONE_IN} sources",
-        },
-        CARD_KEY: without.to_card(),
-        "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
-        "the sequences of frames/subhi, webcam/val, hands/val",
-        "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
-        "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
-        "seed": seed,
-        "nets_went_on_from_the_selector_of_sha256": settings.origin,
-        "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
-        "seconds": round(seconds),
-        "peak_memory_mib": peak_memory_mib(),
-        "versions": {
-            "numpy": np.__version__,
-            "opencv": cv2.__version__,
-            "scikit-learn": sklearn.__version__,
-            "torch": str(torch.__version__),
-        },
-    }
-    with replacing(out.with_suffix(".json")) as temporary:
-        temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

@@ -1,0 +1,73 @@
+"""The card of a selector: what it learnt from, and how."""
+
+import json
+from pathlib import Path
+from typing import Final
+
+import cv2
+import numpy as np
+
+from lightgesture.results.atomic import replacing
+from lightgesture.training.nets.checkpoints import peak_memory_mib
+from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
+from lightgesture.training.regions.nets import RegionTraining
+from lightgesture.training.regions.region_pictures import COMPOSED, NEGATIVE_SETS, ONE_IN, UNSEEN, Material
+
+DIVERS_KEY: Final = "real divers (divers)"
+"""In a card, of their pictures."""
+
+
+def has_seen_dives(start: Path | None) -> bool:
+    """Whether the card beside a selector's file tells of real divers; False without a card that does."""
+    if start is None or not start.with_suffix(".json").is_file():
+        return False
+    try:
+        card = json.loads(start.with_suffix(".json").read_text(encoding="utf-8"))
+        return bool(card["data"][DIVERS_KEY])
+    except (ValueError, KeyError, TypeError):
+        return False
+
+
+def write_card(
+    out: Path,
+    seed: int,
+    without: LeftOut,
+    settings: RegionTraining,
+    material: Material,
+    seconds: float,
+) -> None:
+    """Write the card of the selector's file `out` beside it. seconds: of the training."""
+    import sklearn
+    import torch
+
+    card = {
+        "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
+        "data": {
+            "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
+            "hands cut out of hands/train": len(material.hands),
+            "underwater frames without a hand": len(material.empty),
+            DIVERS_KEY: len(material.divers),
+            "composed pictures": COMPOSED + UNSEEN,
+            "sets of negatives used": list(NEGATIVE_SETS),
+            "kept from the nets, for the trees": f"one in {ONE_IN} sources",
+            "folds of the dives, for the trees": settings.dive_folds,
+        },
+        CARD_KEY: without.to_card(),
+        "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
+        "the sequences of frames/subhi, webcam/val, hands/val",
+        "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
+        "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
+        "seed": seed,
+        "nets_went_on_from_the_selector_of_sha256": settings.origin,
+        "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
+        "seconds": round(seconds),
+        "peak_memory_mib": peak_memory_mib(),
+        "versions": {
+            "numpy": np.__version__,
+            "opencv": cv2.__version__,
+            "scikit-learn": sklearn.__version__,
+            "torch": str(torch.__version__),
+        },
+    }
+    with replacing(out.with_suffix(".json")) as temporary:
+        temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

@@ -94,7 +94,8 @@ def refuse_misplaced(args: argparse.Namespace) -> None:
         raise UsageError("--only and --quick choose clips of the suite; name the target: evaluate suite")
     for option in evaluate_regions.OPTIONS:
         is_fitting = args.target == REGIONS or (
-            option == "selector" and (is_of_divers or args.target == SUITE)
+            (option == "selector" and (is_of_divers or args.target == SUITE))
+            or (option == "fold" and args.target == DIVERS)
         )
         if getattr(args, option) and not is_fitting:
             raise UsageError(f"--{option} is about finding hands; name the target: evaluate regions")

@@ -76,10 +76,13 @@ def find_and_read(
     frames = _frames(args)
     try:
         profile = load_profile(args.profile) if args.profile else None
-        methods = list(named_methods(models, args.selector, profile))
+        if args.fold:
+            report, scored = divers.evaluate_folds(_folds(models, args.fold, frames), progress)
+        else:
+            methods = list(named_methods(models, args.selector, profile))
+            report, scored = divers.evaluate_divers(methods, frames, progress, args.out is not None)
     except (SelectorError, ProfileError) as error:
         raise UsageError(str(error)) from error
-    report, scored = divers.evaluate_divers(methods, frames, progress, args.out is not None)
     written = divers.save_rows(Path(args.out), scored.hands, scored.frames) if args.out else []
     return report, written
 
@@ -98,6 +101,24 @@ def _frames(args: argparse.Namespace) -> "list[DiverFrame]":
             raise InputError(f"{data}: holds no pictures for divers; see --data")
         frames = read_divers(data)
     return spread(choose_frames(frames, args.place or (), args.dive or ()), args.most)
+
+
+def _folds(
+    models: "Mapping[str, Classifier]", files: "list[str]", frames: "list[DiverFrame]"
+) -> "list[tuple[DiverMethod, list[DiverFrame]]]":
+    """The first model with each selector file, and the pictures of dives that its card, as the first, says it did not
+    see. InputError: a card is missing. Raises SelectorError."""
+    from lightgesture.training.pool.divers import SOURCE
+    from lightgesture.training.pool.left_out import read_left_out
+
+    name, classifier = next(iter(models.items()))
+    folds, left = [], frames
+    for file in files:
+        left_out = read_left_out(Path(file))
+        own = [frame for frame in left if left_out.covers(f"{SOURCE} {frame.dive}")]
+        left = [frame for frame in left if frame not in own]
+        folds.append((next(named_methods({name: classifier}, [file])), own))
+    return folds
 
 
 def named_methods(

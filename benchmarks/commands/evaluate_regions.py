@@ -33,7 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         metavar="FILE",
         help="with regions: a selector file that was trained with --fold or --without; all such files together are "
-        "scored on the sources that they did not see, those of webcam/train too (repeatable)",
+        "scored on the sources that they did not see, those of webcam/train too; with divers: on such dives "
+        "(repeatable)",
     )
     parser.add_argument(
         "--compare",

@@ -36,6 +36,19 @@ def evaluate_divers(
     return Report(tables, failures(scored, frames), given_tiles(scored, frames)), scored
 
 
+def evaluate_folds(
+    folds: Sequence[tuple[DiverMethod, Sequence[DiverFrame]]], progress: Progress
+) -> tuple[Report, Scored]:
+    """Each method on pictures of its own, no picture twice, in tables of one. InputError: a picture cannot be read."""
+    hands: list[HandRow] = []
+    rows: list[FrameRow] = []
+    for method, frames in folds:
+        scored = score_divers([method], progress(frames, method.name))
+        hands += [replace(row, method=JOINED) for row in scored.hands]
+        rows += [replace(row, method=JOINED) for row in scored.frames]
+    return Report(tuple(diver_tables(hands, rows)), {}), Scored(tuple(hands), tuple(rows), {})
+
+
 def save_rows(folder: Path, hands: Sequence[HandRow], frames: Sequence[FrameRow]) -> list[Path]:
     """Write the rows; returns the files written."""
     written = []

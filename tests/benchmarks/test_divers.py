@@ -248,6 +248,23 @@ def test_runs_on_other_dives_are_put_together(command, tmp_path, capsys):
         command("--join", tmp_path / "1", "--join", tmp_path / "1")
 
 
+def test_selectors_of_folds_are_scored_on_the_dives_that_they_did_not_see(command, tmp_path, capsys):
+    for file, dives in (("1", ["divers reef_1", "divers reef_2"]), ("2", ["divers reef_2", "divers pool_1"])):
+        card = {"left_out": {"sources": dives, "fold": None}}
+        (tmp_path / f"{file}.json").write_text(json.dumps(card), encoding="utf-8")
+    command("--json", "--place", "reef")
+    reef = told(capsys, "signs")
+    assert command("--json", "--fold", tmp_path / "1.npz") == 0
+    assert told(capsys, "signs") == [{**row, "method": "joined"} for row in reef]
+    command("--json")
+    whole = told(capsys, "signs")
+    # A dive that two files left out is scored by the first.
+    command("--json", "--fold", tmp_path / "1.npz", "--fold", tmp_path / "2.npz")
+    assert told(capsys, "signs") == [{**row, "method": "joined"} for row in whole]
+    with pytest.raises(InputError, match=r"none\.json"):
+        command("--fold", tmp_path / "none.npz")
+
+
 def test_rows_of_several_models_are_not_put_together(command, tmp_path):
     command("--out", tmp_path / "1", "--model", "cnn", "--model", "svm")
     with pytest.raises(InputError, match="rows of several models or selectors"):

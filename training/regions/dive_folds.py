@@ -14,6 +14,7 @@ from lightgesture.features.find.learned import Places
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.pictures.boxed import BoxedPicture
+from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import Material
 from lightgesture.training.regions.trees import Seen, look
@@ -24,10 +25,16 @@ STEPS_SHARE: Final = 1 / 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DiveFold:
-    """Locator and refiner, and the pictures of the dives that they learnt nothing from."""
+    """folder: of its parts. nets: locator and refiner. pictures: of the dives that they learnt nothing from."""
 
+    folder: Path
     nets: tuple[IntegerNetwork, IntegerNetwork]
     pictures: Sequence[BoxedPicture]
+
+    @property
+    def left_out(self) -> LeftOut:
+        """What a card says of it."""
+        return LeftOut(frozenset(source for picture in self.pictures for source in picture.sources))
 
     def seen(self) -> Iterator[Seen]:
         """Those pictures whose hands are all boxed, as these nets see them."""
@@ -57,7 +64,7 @@ def dive_folds(
         left = [one for one, apart in zip(material.divers, is_apart, strict=True) if not apart]
         nets = learn_nets(replace(material, divers=left), composed, own, seed, shortened(settings), progress)
         pictures = [one.picture for one, apart in zip(material.divers, is_apart, strict=True) if apart]
-        yield DiveFold(nets, pictures)
+        yield DiveFold(own, nets, pictures)
 
 
 def shortened(settings: RegionTraining) -> RegionTraining:

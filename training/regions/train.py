@@ -22,7 +22,7 @@ from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
 from lightgesture.training.regions.card import has_seen_dives, write_card
-from lightgesture.training.regions.dive_folds import DiveFold, dive_folds
+from lightgesture.training.regions.dive_folds import DiveFold, dive_folds, shortened
 from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import (
     COMPOSED,
@@ -61,7 +61,8 @@ def train_regions(
     """Train the selector and write it with its card (`out` with the suffix .json).
 
     What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
-    when the file is written. Raises InputError, UsageError.
+    when the file is written. In the end a selector that learnt nothing from the dives of a fold lies there for each
+    fold, for an evaluation. Raises InputError, UsageError.
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
@@ -92,6 +93,11 @@ def train_regions(
     progress("fitting the classical trees")
     classical = _classical(data, for_nets, composed, second, without, seed)
     write_selector(classical, learned, out)
+    for own in folds:
+        others = [fold for fold in folds if fold is not own]
+        apart = own.folder / "selector.npz"
+        write_selector(classical, weighed(own.nets, (first, second), others, seed), apart)
+        write_card(apart, seed, own.left_out, shortened(settings), material, time.monotonic() - started)
     write_card(out, seed, without, settings, material, time.monotonic() - started)
 
 

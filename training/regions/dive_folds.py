@@ -19,8 +19,8 @@ from lightgesture.training.regions.nets import Progress, RegionTraining, learn_n
 from lightgesture.training.regions.region_pictures import Material
 from lightgesture.training.regions.trees import Seen, look
 
-STEPS_SHARE: Final = 1 / 3
-"""Steps of the nets of a fold over those of the shipped ones."""
+SHORTER: Final = 3
+"""By how much fewer steps the nets of a fold take than the shipped ones."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +71,8 @@ def shortened(settings: RegionTraining) -> RegionTraining:
     """The training of the nets of a fold."""
     return replace(
         settings,
-        locator_steps=max(1, round(settings.locator_steps * STEPS_SHARE)),
-        refiner_steps=max(1, round(settings.refiner_steps * STEPS_SHARE)),
+        locator_steps=max(1, settings.locator_steps // SHORTER),
+        refiner_steps=max(1, settings.refiner_steps // SHORTER),
     )
 
 

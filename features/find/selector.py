@@ -1,10 +1,12 @@
 """Choosing the hands of a frame: candidates by either selector, then a pair, one hand, or none.
 
 Two candidates that look like the hands of one person are believed at a lower score than one alone: a red
-box on a table looks like a hand, but seldom has a partner of its size at its height.
+box on a table looks like a hand, but seldom has a partner of its size at its height. Of a diver who
+shows a sign with one hand and holds a reel in the other each is believed by itself.
 """
 
 import os
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Literal
@@ -13,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap, ColourStage
+from lightgesture.features.find.candidates import APART_IOU
 from lightgesture.features.find.classical import ClassicalSelector
 from lightgesture.features.find.learned import LearnedSelector
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
-from lightgesture.features.geometry import mirror_box
+from lightgesture.features.geometry import box_iou, mirror_box
 from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
 from lightgesture.features.types import Candidates, HandRegion, Side
@@ -52,24 +55,37 @@ def best_pair(pairs: NDArray[np.float32]) -> tuple[tuple[int, int], float] | Non
 
 
 def choose(candidates: Candidates, settings: SelectorSettings) -> list[HandRegion]:
-    """The hands of a single picture, by the diver's right first: a pair, one hand, or none."""
+    """The hands of a single picture, by the diver's right first: a pair, else one or two that are believed alone, or
+    none."""
     found = best_pair(candidates.pairs)
     if found is not None and found[1] >= settings.pair_score:
-        two = sorted(
-            (candidates.regions[i] for i in found[0]), key=lambda region: region.box[0] + region.box[2] / 2
-        )
-        sides: tuple[Side, Side] = ("right", "left")
-        return [
-            replace(region, side=side, confidence=max(region.confidence, found[1]))
-            for region, side in zip(two, sides, strict=True)
-        ]
-    if candidates.regions and candidates.regions[0].confidence >= settings.single_score:
-        one = candidates.regions[0]
+        two = [candidates.regions[i] for i in found[0]]
+        return _by_order([replace(one, confidence=max(one.confidence, found[1])) for one in two])
+    believed = [one for one in candidates.regions if one.confidence >= settings.single_score]
+    alone = [
+        replace(one, confidence=one.confidence * ALONE_CONFIDENCE, certainty=ALONE_CONFIDENCE)
+        for one in believed[:1] + [one for one in believed[1:] if _is_apart(one, believed[0])][:1]
+    ]
+    if len(alone) == 1:
         axis = candidates.source_size[0] / 2 if candidates.face is None else candidates.face[0]
-        side: Side = "right" if one.box[0] + one.box[2] / 2 < axis else "left"
-        sure = ALONE_CONFIDENCE
-        return [replace(one, side=side, confidence=one.confidence * sure, certainty=sure)]
-    return []
+        side: Side = "right" if _middle(alone[0]) < axis else "left"
+        return [replace(alone[0], side=side)]
+    return _by_order(alone)
+
+
+def _by_order(hands: Sequence[HandRegion]) -> list[HandRegion]:
+    """Two hands, or none, with the sides of a diver who faces the camera, the right one first."""
+    sides: tuple[Side, Side] = ("right", "left")
+    return [replace(hand, side=side) for hand, side in zip(sorted(hands, key=_middle), sides, strict=False)]
+
+
+def _middle(region: HandRegion) -> float:
+    return region.box[0] + region.box[2] / 2
+
+
+def _is_apart(one: HandRegion, other: HandRegion) -> bool:
+    """Whether both may be hands of one diver."""
+    return box_iou(one.box, other.box) <= APART_IOU
 
 
 def find_hands(

@@ -1,6 +1,7 @@
 """Colour map, proposals, wrist and choice on drawn pictures, ugly ones included."""
 
 import time
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -171,6 +172,21 @@ def test_a_pair_is_believed_before_a_single_region():
 def test_one_hand_takes_the_side_of_its_half_at_lowered_confidence():
     hands = choose(_candidates([0.9], [[0]]), SelectorSettings())
     assert [(hand.side, hand.confidence) for hand in hands] == [("right", pytest.approx(0.72))]
+
+
+def test_two_hands_that_are_no_pair_are_each_believed_alone():
+    settings = SelectorSettings(pair_score=0.3, single_score=0.5)
+    hands = choose(_candidates([0.9, 0.6, 0.55], np.zeros((3, 3))), settings)
+    assert [(hand.side, hand.box[0]) for hand in hands] == [("right", 100), ("left", 250)]
+    assert [hand.confidence for hand in hands] == pytest.approx([0.72, 0.48])
+    assert [hand.certainty for hand in hands] == [0.8, 0.8]
+
+
+def test_a_second_region_on_the_first_is_no_second_hand():
+    found = _candidates([0.9, 0.6], [[0, 0], [0, 0]])
+    near = replace(found.regions[1], box=(150, 100, 80, 80))
+    hands = choose(replace(found, regions=(found.regions[0], near)), SelectorSettings())
+    assert [hand.box[0] for hand in hands] == [100]
 
 
 def test_nothing_is_chosen_below_the_thresholds():

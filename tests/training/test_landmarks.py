@@ -38,7 +38,7 @@ FINGERS = [(-18, -10), (-12, -30), (0, -34), (10, -30), (20, -22)]
 def spread_landmarks():
     """A hand of 21 landmarks with its wrist at (50, 62), float32 (21, 2)."""
     fingers = [np.linspace((0, 0), end, 5)[1:] for end in FINGERS]
-    return (np.vstack([np.zeros((1, 2)), *fingers]) + (50, 62)).astype(np.float32)
+    return np.add(np.vstack([np.zeros((1, 2)), *fingers]), (50, 62)).astype(np.float32)
 
 
 def dotted(number, token="5", source="somebody"):

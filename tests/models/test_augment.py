@@ -46,8 +46,8 @@ def bright_columns(image: np.ndarray) -> float:
 
 def test_a_mirrored_copy_exchanges_left_and_right() -> None:
     random = np.random.default_rng(0)
-    image, _, token = augment(thumb_left(), [], PLAIN, random)
-    mirrored, _, other = augment(thumb_left(), [], replace(PLAIN, mirror=1.0), random)
+    image, _, token, _ = augment(thumb_left(), [], PLAIN, random)
+    mirrored, _, other, _ = augment(thumb_left(), [], replace(PLAIN, mirror=1.0), random)
     assert (token, other) == ("left", "right")
     assert bright_columns(image) < 0 < bright_columns(mirrored)
     assert augment(thumb_left("pic"), [], replace(PLAIN, mirror=1.0), random)[2] == "pic"
@@ -56,7 +56,7 @@ def test_a_mirrored_copy_exchanges_left_and_right() -> None:
 @pytest.mark.parametrize("landmarks", [True, False])
 def test_the_box_follows_the_hand(landmarks: bool) -> None:
     hand = thumb_left(landmarks=landmarks)
-    image, box, _ = augment(hand, [], PLAIN, np.random.default_rng(0))
+    image, box, _, _ = augment(hand, [], PLAIN, np.random.default_rng(0))
     assert image.shape == (CANVAS, CANVAS, 3)
     zoom = CANVAS / (REACH * max(hand.box[2:]))
     assert box[2] == pytest.approx(hand.box[2] * zoom, abs=2)
@@ -65,9 +65,9 @@ def test_the_box_follows_the_hand(landmarks: bool) -> None:
 
 def test_another_background_leaves_the_hand() -> None:
     hand = thumb_left()
-    before, _, _ = augment(hand, [], PLAIN, np.random.default_rng(0))
+    before = augment(hand, [], PLAIN, np.random.default_rng(0)).image
     water = np.full((40, 50, 3), (200, 160, 20), np.uint8)
-    after, _, _ = augment(hand, [water], replace(PLAIN, background=1.0), np.random.default_rng(0))
+    after = augment(hand, [water], replace(PLAIN, background=1.0), np.random.default_rng(0)).image
     assert after[2, 2].tolist() == pytest.approx([200, 160, 20], abs=2)
     assert np.abs(after[48, 52].astype(int) - before[48, 52]).max() <= 2
 

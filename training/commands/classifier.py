@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from lightgesture.config.parsers import whole
 from lightgesture.console import say
@@ -12,6 +12,11 @@ from lightgesture.errors import ExitStatus, UsageError
 
 if TYPE_CHECKING:
     from lightgesture.training.nets.cnn import CnnTraining
+
+LANDMARKS: Final = 0.3
+"""Default of `CnnTraining.landmarks`, which the commands do not import for their help."""
+MOST: Final = 10.0
+"""Largest weight of the landmarks."""
 
 
 def add_data_arguments(parser: argparse.ArgumentParser) -> None:
@@ -60,6 +65,25 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
 
 
+def add_landmarks_argument(parser: argparse.ArgumentParser) -> None:
+    """Declare the weight of the second task of a net's training."""
+    parser.add_argument(
+        "--landmarks",
+        type=_weight,
+        default=LANDMARKS,
+        metavar="WEIGHT",
+        help="of the 21 landmarks that a net learns besides where they are known (column lm, rendered hands); the "
+        f"model holds nothing of it (default: {LANDMARKS:g}; 0: classes alone)",
+    )
+
+
+def _weight(text: str) -> float:
+    value = float(text)
+    if not 0.0 <= value <= MOST:
+        raise argparse.ArgumentTypeError(f"{text} is not from 0 to {MOST:g}")
+    return value
+
+
 def kept_text(out: Path) -> str:
     """What becomes of an interrupted training of the model `out`."""
     folder = out.with_suffix(".parts")
@@ -83,6 +107,7 @@ def net_training(args: argparse.Namespace) -> "CnnTraining":
         seed=args.seed,
         jobs=args.jobs,
         precision=args.precision,
+        landmarks=args.landmarks,
     )
     pool = training.pool
     if args.copies is not None:

@@ -6,7 +6,12 @@ from typing import TYPE_CHECKING
 
 from lightgesture.config.parsers import whole
 from lightgesture.errors import UsageError
-from lightgesture.training.commands.classifier import add_data_arguments, net_training, train_and_tell
+from lightgesture.training.commands.classifier import (
+    add_data_arguments,
+    add_landmarks_argument,
+    net_training,
+    train_and_tell,
+)
 from lightgesture.training.commands.train import PRECISIONS, model_path
 
 if TYPE_CHECKING:
@@ -43,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of the training; bfloat16 takes two thirds of the time on processors with instructions for it "
         "(avx512_bf16, amx) and several times as long on others",
     )
+    add_landmarks_argument(parser)
     parser.add_argument(
         "--synthetic", type=whole, metavar="N", help="rendered hands beside the real ones (default: 12000)"
     )

@@ -5,7 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from lightgesture.config.parsers import positive, whole
-from lightgesture.training.commands.classifier import add_data_arguments, net_training, train_and_tell
+from lightgesture.training.commands.classifier import (
+    add_data_arguments,
+    add_landmarks_argument,
+    net_training,
+    train_and_tell,
+)
 from lightgesture.training.commands.train import PRECISIONS, model_path
 
 
@@ -25,6 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--precision", choices=PRECISIONS, default="float32", help="of the training, see train cnn"
     )
+    add_landmarks_argument(parser)
     parser.add_argument(
         "--synthetic",
         type=whole,

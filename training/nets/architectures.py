@@ -79,6 +79,8 @@ def refiner_nodes() -> tuple[Node, ...]:
 
 HAND_CHANNELS = {"small": (12, 20, 32), "medium": (16, 28, 44), "large": (24, 40, 64)}
 """Channels of a hand net's grids of 2, 4 and 8 pixels by its size; time grows with their squares."""
+WHOLE = "whole"
+"""Name of the layer of the hand nets that sees a patch as a whole; what it reads still tells places apart."""
 HAND_WHOLE = 56
 """Numbers in which a hand net sees a patch as a whole."""
 
@@ -111,13 +113,13 @@ def hand_nodes(classes: int, contours: int, size: str = "medium") -> tuple[Node,
         *convolved("fingers1", "fingers", middle, 2),
         Node("shape", "conv", ("fingers1",), coarse, 3, 2, "relu6"),
         *convolved("shape1", "shape", coarse, 1),
-        Node("whole", "dense", ("shape1",), HAND_WHOLE, activation=seen),
+        Node(WHOLE, "dense", ("shape1",), HAND_WHOLE, activation=seen),
     ]
-    last = "whole"
+    last = WHOLE
     if contours:
         # The sum of two dense layers is one dense layer over both inputs side by side.
         nodes.append(Node("outline", "dense", (cnn.CONTOUR,), HAND_WHOLE))
-        nodes.append(Node("both", "add", ("whole", "outline"), activation="relu6"))
+        nodes.append(Node("both", "add", (WHOLE, "outline"), activation="relu6"))
         last = "both"
     return (*nodes, Node(cnn.SCORES, "dense", (last,), classes))
 
@@ -134,8 +136,8 @@ def teacher_nodes(classes: int, channels: tuple[int, int, int] = (24, 48, 80)) -
         *convolved("middle2", "middle1", middle, 2),
         Node("coarse", "conv", ("middle2",), coarse, 3, 2, "relu6"),
         *convolved("coarse1", "coarse", coarse, 2),
-        Node("whole", "dense", ("coarse1",), 96, activation="relu6"),
-        Node(cnn.SCORES, "dense", ("whole",), classes),
+        Node(WHOLE, "dense", ("coarse1",), 96, activation="relu6"),
+        Node(cnn.SCORES, "dense", (WHOLE,), classes),
     )
 
 

@@ -53,7 +53,7 @@ def _remedy(folder: Path) -> str:
     other = folder.with_name(f"other{folder.suffix}")
     return (
         "give the same options to go on with it, or another --out. To use its patches with other steps: "
-        f"mkdir {other}, cp {folder}/patches.* {folder}/contours.npy {other}, and --out {other.with_suffix('.npz')}"
+        f"mkdir {other}, cp {folder}/patches.* {folder}/[cl]*.npy {other}, and --out {other.with_suffix('.npz')}"
     )
 
 

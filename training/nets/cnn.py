@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture._version import __version__
+from lightgesture.console import warn
 from lightgesture.features.outline.contours import contour_length
 from lightgesture.models.cnn import CnnClassifier, CnnModel
 from lightgesture.training.card import held_out_section, make_card
@@ -66,6 +67,8 @@ class CnnTraining:
     """Of each of these."""
     precision: "Precision" = "float32"
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
+    landmarks: float = 0.3
+    """Weight of a hand's landmarks, which all nets learn besides where they are known, 0 to 10; 0: they learn none."""
     pool: PoolSettings = field(default_factory=PoolSettings)
     """What is drawn."""
 
@@ -168,6 +171,11 @@ def draw(training: CnnTraining, out: Path, progress: Progress, **more: str) -> D
     progress(f"reading {len(rows)} hands")
     originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
+    if training.landmarks and pool.landmarks is None:
+        warn(
+            f"{folder}: its patches were drawn without landmarks, and the nets learn without them; "
+            "draw them anew with another --out"
+        )
     return Drawn(rows, originals, pool, kept_out(originals.hands), folder)
 
 
@@ -181,7 +189,13 @@ def learn(
 ) -> "LearntNet":
     """A net trained on the chosen rows of the pool, in floating point."""
     from lightgesture.training.nets.architectures import hand_nodes
-    from lightgesture.training.nets.hand_net import LearntNet, OutlineScale, make_net, train_hand_net
+    from lightgesture.training.nets.hand_net import (
+        LearntNet,
+        OutlineScale,
+        make_net,
+        tells_landmarks,
+        train_hand_net,
+    )
     from lightgesture.training.nets.teachers import teach
 
     settings, seed = net_settings(training), training.seed
@@ -193,7 +207,8 @@ def learn(
     length = contour_length(CONTOUR) if training.contours else 0
     outlines = pool.contours[chosen, :length].astype(np.float32)
     scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))
-    net = make_net(hand_nodes(len(classes), length, training.size), PATCH.size, length, seed)
+    nodes, tells = hand_nodes(len(classes), length, training.size), tells_landmarks(samples, settings)
+    net = make_net(nodes, PATCH.size, length, seed, landmarks=tells)
     net = train_hand_net(net, samples, scale, settings, seed, folder / "hand.pt", progress)
     return LearntNet(net, samples, scale)
 
@@ -219,4 +234,4 @@ def net_settings(training: CnnTraining) -> "NetSettings":
     """Those of the optimiser."""
     from lightgesture.training.nets.hand_net import NetSettings
 
-    return NetSettings(training.steps, training.precision)
+    return NetSettings(training.steps, training.precision, training.landmarks)

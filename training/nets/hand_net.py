@@ -16,6 +16,7 @@ from lightgesture.features.outline.contours import ContourSettings, contour_vect
 from lightgesture.features.types import Float
 from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
 from lightgesture.training.nets.hand_samples import HandBatch, HandSamples, standardised
+from lightgesture.training.nets.landmark_task import LANDMARKS, landmark_loss, with_head, without_head
 from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, train_net
 from lightgesture.training.nets.quantise import quantise
 from lightgesture.training.nets.torch_network import TorchNetwork
@@ -48,6 +49,8 @@ class NetSettings:
     """Of the optimiser."""
     precision: Precision = "float32"
     """See `net_training.PRECISIONS`."""
+    landmarks: float = 0.0
+    """Weight of the landmarks beside the classes, 0 to 10; 0: they are not learnt. See `landmark_task`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,13 +82,23 @@ class LearntNet:
             return np.asarray(self.net(inputs_of(seen, known))[SCORES].numpy(), np.float32)
 
 
-def make_net(nodes: tuple[Node, ...], size: int, contours: int, seed: int) -> TorchNetwork:
-    """A net with random weights for patches of `size` pixels and so many numbers of the outline."""
+def make_net(
+    nodes: tuple[Node, ...], size: int, contours: int, seed: int, *, landmarks: bool = False
+) -> TorchNetwork:
+    """A net with random weights for patches of `size` pixels and so many numbers of the outline, if wanted with a head
+    for landmarks."""
     torch.manual_seed(seed)
     inputs: dict[str, Shape] = {PATCH: (size, size, 3)}
     if contours:
         inputs[CONTOUR] = (1, 1, contours)
+    if landmarks:
+        return TorchNetwork(inputs, with_head(nodes), (SCORES, LANDMARKS))
     return TorchNetwork(inputs, nodes, (SCORES,))
+
+
+def tells_landmarks(samples: HandSamples, settings: NetSettings) -> bool:
+    """Whether a net that learns from these samples with these settings has a head for landmarks."""
+    return settings.landmarks > 0.0 and samples.has_landmarks
 
 
 def train_hand_net(
@@ -108,32 +121,42 @@ def train_hand_net(
     def batch(rng: np.random.Generator) -> Batch:
         drawn = samples.draw(rng, BATCH)
         inputs = inputs_of(drawn, scale if CONTOUR in net.inputs else None)
-        truth = (drawn.truth,) if drawn.answers is None else (drawn.truth, drawn.answers)
+        classes = drawn.truth if drawn.answers is None else drawn.answers
+        truth = (classes,) if drawn.landmarks is None else (classes, drawn.landmarks)
         return inputs, tuple(torch.from_numpy(values) for values in truth)
 
     def loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
-        scores = outputs[SCORES]
-        if len(truth) == 1:
-            return functional.cross_entropy(scores, truth[0], label_smoothing=SMOOTHING)
-        # Of teachers it learns what they say and nothing else (Hinton, Vinyals and Dean, 2015).
-        wanted = torch.softmax(truth[1] / SOFTNESS, dim=1)
-        far = functional.kl_div(torch.log_softmax(scores / SOFTNESS, dim=1), wanted, reduction="batchmean")
-        return SOFTNESS**2 * far
+        far = class_loss(outputs[SCORES], truth[0])
+        if LANDMARKS in outputs:
+            far = far + settings.landmarks * landmark_loss(outputs[LANDMARKS], truth[1])
+        return far
 
     warm_up = max(1, min(LONGEST_WARM_UP, settings.steps // 4))
     loop = LoopSettings(settings.steps, RATE, MATRIX_RATE, warm_up=warm_up, precision=settings.precision)
     return train_net(net, batch, loss, loop, seed, checkpoint, progress, stopping)
 
 
+def class_loss(scores: Tensor, truth: Tensor) -> Tensor:
+    """Of scores, (n, classes), against classes, int64 (n,), or what teachers answered, float (n, classes)."""
+    if truth.ndim == 1:
+        return functional.cross_entropy(scores, truth, label_smoothing=SMOOTHING)
+    # Of teachers it learns what they say and nothing else (Hinton, Vinyals and Dean, 2015).
+    wanted = torch.softmax(truth / SOFTNESS, dim=1)
+    far = functional.kl_div(torch.log_softmax(scores / SOFTNESS, dim=1), wanted, reduction="batchmean")
+    return SOFTNESS**2 * far
+
+
 def to_integers(
     net: TorchNetwork, samples: HandSamples, scale: OutlineScale, settings: NetSettings, seed: int
 ) -> IntegerNetwork:
-    """The net in integers, the ranges of its tensors measured on batches of its own training."""
+    """The net in integers without a head for landmarks, the ranges of its tensors measured on batches of its own
+    training."""
     drawn = (
         samples.draw(np.random.default_rng((seed, settings.steps + 1, i)), 128) for i in range(CALIBRATION)
     )
     known = scale if CONTOUR in net.inputs else None
-    return quantise(net, (inputs_of(one, known) for one in drawn), dict.fromkeys(net.inputs, STANDARD_RANGE))
+    inputs = (inputs_of(one, known) for one in drawn)
+    return quantise(without_head(net), inputs, dict.fromkeys(net.inputs, STANDARD_RANGE))
 
 
 def inputs_of(batch: HandBatch, scale: OutlineScale | None) -> dict[str, Tensor]:

@@ -29,12 +29,15 @@ LARGEST_ERASED: Final = 0.4
 @dataclass(frozen=True, slots=True, eq=False)
 class HandBatch:
     """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,).
-    answers: float32 (n, classes), scores of other nets for the same patches, None where nobody gave any."""
+    answers: float32 (n, classes), scores of other nets for the same patches, None where nobody gave any.
+    landmarks: float32 (n, 42), x and y of each in turn, sides of the patch from its middle, NaN where unknown or
+    covered; None where the pool has none."""
 
     patches: Float
     contours: Float
     truth: NDArray[np.int64]
     answers: Float | None = None
+    landmarks: Float | None = None
 
 
 def standardised(patches: NDArray[np.uint8]) -> Float:
@@ -85,6 +88,12 @@ class HandSamples:
         """Side of a drawn patch, pixels."""
         return int(self._pool.patches.shape[1] - 2 * self._margin)
 
+    @property
+    def has_landmarks(self) -> bool:
+        """Whether the landmarks of any row are known."""
+        known = self._pool.landmarks
+        return known is not None and bool(np.isfinite(known[self._rows]).any())
+
     def with_answers(self, answers: NDArray[np.float16]) -> "HandSamples":
         """The same, its batches with other nets' scores: (rows, classes), as `middles` counts the rows."""
         other = copy.copy(self)
@@ -105,26 +114,41 @@ class HandSamples:
         """`count` patches."""
         drawn = self.draw_rows(random, count)
         rows = self._rows[drawn]
-        seen = standardised(self._shifted(rows, random))
-        self._erase(seen, random)
+        corners = random.integers(2 * self._margin + 1, size=(count, 2))
+        seen = standardised(self._shifted(rows, corners))
+        landmarks = self._landmarks(rows, corners)
+        self._erase(seen, landmarks, random)
         answers = None if self._answers is None else self._answers[drawn].astype(np.float32)
-        return HandBatch(seen, self._pool.contours[rows].astype(np.float32), self._truth[drawn], answers)
+        contours = self._pool.contours[rows].astype(np.float32)
+        return HandBatch(seen, contours, self._truth[drawn], answers, landmarks)
 
-    def _shifted(self, rows: NDArray[np.int64], random: Random) -> NDArray[np.uint8]:
+    def _landmarks(self, rows: NDArray[np.int64], corners: NDArray[np.int64]) -> Float | None:
+        """Of rows of the pool in the parts of them that begin at (top, left)."""
+        if self._pool.landmarks is None:
+            return None
+        places = self._pool.landmarks[rows].astype(np.float32).reshape(len(rows), -1, 2)
+        places = places * np.float32(self.size + 2 * self._margin) - corners[:, None, ::-1]
+        return np.asarray(places / self.size - 0.5, np.float32).reshape(len(rows), -1)
+
+    def _shifted(self, rows: NDArray[np.int64], corners: NDArray[np.int64]) -> NDArray[np.uint8]:
         size = self.size
-        corners = random.integers(2 * self._margin + 1, size=(len(rows), 2))
         parts = [
             self._pool.patches[row, top : top + size, left : left + size]
             for row, (top, left) in zip(rows, corners, strict=True)
         ]
         return np.stack(parts)
 
-    def _erase(self, seen: Float, random: Random) -> None:
+    def _erase(self, seen: Float, landmarks: Float | None, random: Random) -> None:
+        """Cover a part of some patches; the landmarks there become unknown, for there is nothing to tell them by."""
         size = seen.shape[1]
         for number in np.flatnonzero(random.random(len(seen)) < ERASED_SHARE):
             height, width = random.integers(2, max(3, round(LARGEST_ERASED * size)), 2)
             top, left = random.integers(size - height + 1), random.integers(size - width + 1)
             seen[number, top : top + height, left : left + width] = random.normal(0.0, 1.0, 3)
+            if landmarks is not None:
+                places = (landmarks[number].reshape(-1, 2) + 0.5) * size - (left, top)
+                covered = ((places >= 0) & (places < (width, height))).all(axis=1)
+                landmarks[number, np.repeat(covered, 2)] = np.nan
 
 
 def _with_divers(

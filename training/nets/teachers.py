@@ -17,7 +17,7 @@ from lightgesture.errors import UsageError
 from lightgesture.models.cnn import PATCH, SCORES
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.architectures import teacher_nodes
-from lightgesture.training.nets.hand_net import NetSettings, make_net, train_hand_net
+from lightgesture.training.nets.hand_net import NetSettings, make_net, tells_landmarks, train_hand_net
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.nets.net_training import net_outputs
 from lightgesture.training.nets.torch_network import TorchNetwork
@@ -42,9 +42,7 @@ def teach(
     path = folder / "answers.npy"
     if not path.exists():
         # Weights are drawn from one generator of the process, so before the threads begin.
-        nets = [
-            make_net(teacher_nodes(len(samples.classes)), samples.size, 0, seed + own) for own in range(count)
-        ]
+        nets = [_teacher_net(samples, settings, seed + number) for number in range(count)]
 
         stopping = threading.Event()
 
@@ -78,8 +76,13 @@ def teacher(
     samples: HandSamples, settings: NetSettings, seed: int, folder: Path, progress: Callable[[str], None]
 ) -> TorchNetwork:
     """The first of the nets that teach, from `folder`, where `teach` left it, or trained on."""
-    net = make_net(teacher_nodes(len(samples.classes)), samples.size, 0, seed)
+    net = _teacher_net(samples, settings, seed)
     return train_hand_net(net, samples, None, settings, seed, folder / "teacher1.pt", progress)
+
+
+def _teacher_net(samples: HandSamples, settings: NetSettings, seed: int) -> TorchNetwork:
+    nodes, learnt = teacher_nodes(len(samples.classes)), tells_landmarks(samples, settings)
+    return make_net(nodes, samples.size, 0, seed, landmarks=learnt)
 
 
 def answers_of(net: TorchNetwork, samples: HandSamples, settings: NetSettings) -> NDArray[np.float32]:

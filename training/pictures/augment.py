@@ -7,13 +7,13 @@ bright window, and shift its box as a selector would.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Float, Image
 from lightgesture.models import NONE
 from lightgesture.training.pictures.cutouts import draw_hand
 from lightgesture.training.pictures.light import LightSettings, relight
@@ -98,6 +98,16 @@ class _Canvas:
     landmarks: NDArray[np.float32] | None
 
 
+class AlteredCopy(NamedTuple):
+    """image: uint8 (CANVAS, CANVAS, 3). box: of the hand in it, with an error. token: class name.
+    landmarks: float32 (21, 2), pixels of `image`, None where unknown."""
+
+    image: Image
+    box: Box
+    token: str
+    landmarks: Float | None
+
+
 Finish = Callable[[Image, NDArray[np.float32] | None, Random], Image]
 """What is done to a copy at last: picture, mask of the hand where known, generator -> picture."""
 
@@ -108,8 +118,8 @@ def augment(
     settings: AugmentSettings,
     random: Random,
     finish: Finish | None = None,
-) -> tuple[Image, Box, str]:
-    """One altered copy: picture, uint8 (CANVAS, CANVAS, 3), box of the hand in it with an error, token.
+) -> AlteredCopy:
+    """One altered copy.
 
     backgrounds: pictures at least a few pixels wide, of any size, to stand behind the hand. finish: instead of other
     light.
@@ -126,7 +136,7 @@ def augment(
         if len(backgrounds) and random.random() < settings.background:
             image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
     image = relight(image, mask, settings.light, random) if finish is None else finish(image, mask, random)
-    return image, shifted_box(_box(canvas), settings, random), token
+    return AlteredCopy(image, shifted_box(_box(canvas), settings, random), token, canvas.landmarks)
 
 
 def hand_mask(landmarks: NDArray[np.float32], size: int, finger_width: float) -> NDArray[np.float32]:

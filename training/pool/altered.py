@@ -29,9 +29,15 @@ def altered(
     unmirrored = replace(settings, mirror=0.0)
     for hand in hands:
         known = MIRRORED_TOKENS.get(hand.token, hand.token) in tokens
-        image, box, token = augment(hand, pictures, settings if known else unmirrored, random, finish)
+        copy = augment(hand, pictures, settings if known else unmirrored, random, finish)
         yield TrainingSample(
-            image=image, box=box, side=hand.side, token=token, source=hand.source, original=False
+            image=copy.image,
+            box=copy.box,
+            side=hand.side,
+            token=copy.token,
+            source=hand.source,
+            original=False,
+            landmarks=copy.landmarks,
         )
 
 
@@ -58,4 +64,7 @@ def relit(region: TrainingSample, light: LightSettings, random: Random) -> Train
         max(2, round(height * scale)),
     )
     image = relight(part, None, light, random)
-    return replace(region, image=image, box=box, original=False)
+    landmarks = region.landmarks
+    if landmarks is not None:
+        landmarks = ((landmarks + 0.5 - (left, top)) * scale - 0.5).astype(np.float32)
+    return replace(region, image=image, box=box, original=False, landmarks=landmarks)

@@ -65,8 +65,8 @@ def _hidden(
     pictures = behind(originals)
     for hand in originals.hands[first:last]:
         if random.random() < HIDDEN:
-            image, box, _ = augment(hand, pictures, settings.augment, random)
-            image, box = hide(image, box, pictures, random)
+            copy = augment(hand, pictures, settings.augment, random)
+            image, box = hide(copy.image, copy.box, pictures, random)
             yield TrainingSample(
                 image=image, box=box, side=hand.side, token=NONE, source=hand.source, original=False
             )
@@ -118,6 +118,7 @@ def rendered_hands(count: int, seed: int, augment: AugmentSettings) -> Iterator[
             token=crop.token,
             source=f"{RENDERED_SOURCE} {index % RENDERED_SOURCES}",
             original=False,
+            landmarks=np.asarray(crop.landmarks, np.float32),
         )
 
 

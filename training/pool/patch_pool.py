@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.errors import UsageError
 from lightgesture.features.outline.contours import contour_length, contour_vectors
 from lightgesture.features.patch import cut_patch
 from lightgesture.models import NONE
@@ -27,6 +28,7 @@ from lightgesture.training.pool.patch_kinds import (
     KINDS,
     MARGIN,
 )
+from lightgesture.training.pool.patch_landmarks import COORDINATES, patch_landmarks
 
 Progress = Callable[[str, int, int], None]
 HANDS_A_TASK = 400
@@ -35,13 +37,16 @@ HANDS_A_TASK = 400
 @dataclass(frozen=True, slots=True, eq=False)
 class PatchPool:
     """patches: uint8 (n, side, side, 3), BGR, with their margin. contours: float16 (n, c), numbers of the outline.
-    tokens, sources: (n,), names. hands: int (n,), number of the hand of which a patch is a copy, -1 for none."""
+    tokens, sources: (n,), names. hands: int (n,), number of the hand of which a patch is a copy, -1 for none.
+    landmarks: float16 (n, 42), x and y of each in sides of a patch with its margin, NaN where unknown, see
+    `patch_landmarks`; None for a pool that was drawn without."""
 
     patches: NDArray[np.uint8]
     contours: NDArray[np.float16]
     tokens: NDArray[np.str_]
     sources: NDArray[np.str_]
     hands: NDArray[np.int64]
+    landmarks: NDArray[np.float16] | None = None
 
 
 class _Task(NamedTuple):
@@ -61,6 +66,7 @@ class _Rows(NamedTuple):
     tokens: list[str]
     sources: list[str]
     hands: list[int]
+    landmarks: NDArray[np.float16]
 
 
 _worker: tuple[Originals, PoolSettings, int] | None = None
@@ -72,20 +78,22 @@ def make_pool(
 ) -> PatchPool:
     """The pool in `folder`; one that is there already is used as it is.
 
-    Every task is drawn from (seed, its own numbers), so that the number of processes changes nothing.
+    Every task is drawn from (seed, its own numbers), so that the number of processes changes nothing. A pool may lack
+    the file of landmarks. Raises UsageError where that file is of another pool.
     """
     table = folder / "patches.json"
     if not table.exists():
         tasks = _tasks(originals, settings)
-        patches, contours = [], []
+        patches, contours, landmarks = [], [], []
         named: dict[str, list[Any]] = {"tokens": [], "sources": [], "hands": []}
         for done, rows in enumerate(_results(originals, settings, seed, jobs, tasks), 1):
             patches.append(rows.patches)
             contours.append(rows.contours)
+            landmarks.append(rows.landmarks)
             for name, column in named.items():
                 column.extend(getattr(rows, name))
             progress("draw patches", done, len(tasks))
-        for name, arrays in (("patches", patches), ("contours", contours)):
+        for name, arrays in (("patches", patches), ("contours", contours), ("landmarks", landmarks)):
             with replacing(folder / f"{name}.npy") as temporary, temporary.open("wb") as stream:
                 np.save(stream, np.concatenate(arrays))
         with replacing(table) as temporary:
@@ -97,7 +105,19 @@ def make_pool(
         np.array(names["tokens"]),
         np.array(names["sources"]),
         np.array(names["hands"], np.int64),
+        _landmarks_of(folder, len(names["tokens"])),
     )
+
+
+def _landmarks_of(folder: Path, count: int) -> NDArray[np.float16] | None:
+    """Those of a pool of `count` patches, None where it was drawn without."""
+    path = folder / "landmarks.npy"
+    if not path.exists():
+        return None
+    landmarks = np.asarray(np.load(path), np.float16)
+    if landmarks.shape != (count, COORDINATES):
+        raise UsageError(f"{path}: holds landmarks of other patches; copy it from where the patches are from")
+    return landmarks
 
 
 def rows_without(
@@ -158,9 +178,10 @@ def _draw(task: _Task) -> _Rows:
         raise RuntimeError("the worker has nothing to draw from; call make_pool")
     originals, settings, seed = _worker
     random = np.random.default_rng((seed, list(KINDS).index(task.kind), task.turn, task.first))
-    patches, tokens, sources = [], [], []
+    patches, tokens, sources, landmarks = [], [], [], []
     for sample in KINDS[task.kind](originals, settings, task.first, task.last, random):
         patches.append(cut_patch(sample.image, sample.box, sample.side, KEPT))
+        landmarks.append(patch_landmarks(sample, KEPT))
         tokens.append(sample.token)
         sources.append(sample.source)
     cut = np.array(patches, np.uint8).reshape(len(patches), KEPT.size, KEPT.size, 3)
@@ -169,4 +190,5 @@ def _draw(task: _Task) -> _Rows:
     if len(cut):
         contours[:] = contour_vectors(np.ascontiguousarray(cut[:, inner, inner]), CONTOUR)
     hands = range(task.first, task.last) if task.kind in COPIED else [-1] * len(cut)
-    return _Rows(cut, contours, tokens, sources, list(hands))
+    places = np.array(landmarks, np.float16).reshape(len(cut), COORDINATES)
+    return _Rows(cut, contours, tokens, sources, list(hands), places)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lightgesture.features.types import Box, Image
+from lightgesture.features.types import Box, Float, Image
 from lightgesture.models import CLASSES, NONE
 
 
@@ -24,6 +24,8 @@ class TrainingSample:
     hand: number of the hand that this is or is a copy of, -1 where it is of none; with few sources a held-out fold
     holds whole hands. original: False for an altered copy; only originals count in scores. weight: how much it counts
     in training beside others of its class and source, 0 or more.
+    landmarks: float32 (21, 2), x and y in pixels of `image`, the middle of its first pixel being (0, 0); wrist, then
+    thumb to little finger, each from its base to its tip. None where unknown.
     """
 
     image: Image
@@ -34,3 +36,4 @@ class TrainingSample:
     hand: int = -1
     original: bool = True
     weight: float = 1.0
+    landmarks: Float | None = None

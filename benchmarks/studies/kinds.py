@@ -32,7 +32,7 @@ from lightgesture.errors import InputError
 from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.nets.cnn import CnnTraining
-from lightgesture.training.pool.kept_sources import kept_out
+from lightgesture.training.pool.kept_hands import kept_out
 from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import rows_without
 

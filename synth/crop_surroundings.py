@@ -1,0 +1,61 @@
+"""What stands behind single hands: small pictures of rooms, some with a person, and of dives."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from lightgesture.synth.backdrop import Backdrop, BackdropLook
+from lightgesture.synth.body import BodyLook, Camera, render_body
+from lightgesture.synth.raster import Float32
+from lightgesture.synth.room import Room, RoomLook
+from lightgesture.synth.shading import Light, triple
+from lightgesture.synth.skeleton import rotation_y, rotation_z
+from lightgesture.synth.skin import skin_tone
+from lightgesture.synth.water import JERLOV_BGR, make_water
+
+SIZE: Final = (320, 240)
+"""Of each picture, pixels."""
+PERSON_SHARE: Final = 0.6
+"""Share of rooms with somebody in them."""
+
+
+def draw_surroundings(rng: np.random.Generator, count: int) -> tuple[list[Float32], list[Float32]]:
+    """`count` rooms and as many dives, float32 (240, 320, 3), linear BGR."""
+    rooms, dives = [], []
+    for _ in range(count):
+        look = RoomLook(
+            wall=int(rng.integers(6)), pieces=int(rng.integers(0, 14)), lamps=int(rng.integers(3)),
+            window=float(rng.uniform(0.8, 2.5)) if rng.uniform() < 0.3 else 0.0,
+            level=float(rng.uniform(0.3, 1.2)), blur=float(rng.uniform(0.0, 0.02)),
+        )  # fmt: skip
+        room = Room(look, SIZE, rng)
+        picture = room.frame(0.0)
+        if rng.uniform() < PERSON_SHARE:
+            _draw_person(picture, room.light(rng), rng)
+        rooms.append(picture)
+        floor = str(rng.choice(("sand", "tiles", "rocks")))
+        surface = float(rng.uniform(0.3, 0.9)) if rng.uniform() < 0.5 else 0.0
+        dive = BackdropLook(floor, float(rng.uniform(0.5, 3.0)), surface, float(rng.uniform(0.2, 0.7)))
+        water = make_water(str(rng.choice(list(JERLOV_BGR)[:7])), 2.0, float(rng.uniform(0.05, 0.6)))
+        dives.append(Backdrop(dive, water, 280.0, SIZE, rng).frame(float(rng.uniform(0.0, 9.0))))
+    return rooms, dives
+
+
+def _draw_person(picture: Float32, light: Light, rng: np.random.Generator) -> None:
+    """Somebody behind the hand, as in most pictures from webcams: face, hair and a shirt."""
+    blue, green, red = triple(skin_tone(float(rng.uniform(1.0, 9.5))).back)
+    look = BodyLook(
+        suit_bgr=triple(rng.uniform(0.01, 0.7, 3)), accent_bgr=triple(rng.uniform(0.01, 0.7, 3)),
+        skin_bgr=(blue, green, red), hood_bgr=triple(rng.uniform(0.005, 0.12) * np.array([0.5, 0.7, 1.0])),
+        hood=False, mask=False, regulator=False, legs=False,
+    )  # fmt: skip
+    size = (picture.shape[1], picture.shape[0])
+    camera = Camera(float(size[0]), (0.5 * size[0], 0.5 * size[1]))
+    place = np.array([rng.normal(0.0, 200.0), rng.normal(-120.0, 80.0), rng.uniform(500.0, 1100.0)])
+    wrists = (np.array([260.0, -400.0, 60.0]), np.array([-260.0, -400.0, 60.0]))
+    turn = rotation_y(rng.normal(0.0, 20.0)) @ rotation_z(rng.normal(0.0, 6.0))
+    radiance, cover = render_body(look, turn, place, wrists, camera, size, light)
+    picture *= 1.0 - cover[..., None]
+    picture += radiance

@@ -13,10 +13,14 @@ from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.shading import Light, triple
 from lightgesture.synth.skeleton import rotation_y, rotation_z
 from lightgesture.synth.skin import skin_tone
-from lightgesture.synth.water import JERLOV_BGR, make_water
+from lightgesture.synth.water import JERLOV_BGR, Water, WaterRange, make_water
 
 SIZE: Final = (320, 240)
 """Of each picture, pixels."""
+WATERS: Final = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (float(np.exp(-3.0)), 1.0))
+"""Between camera and hand."""
+WATER_SHARE: Final = 0.3
+"""Share of hands seen through water."""
 PERSON_SHARE: Final = 0.6
 """Share of rooms with somebody in them."""
 
@@ -41,6 +45,11 @@ def draw_surroundings(rng: np.random.Generator, count: int) -> tuple[list[Float3
         water = make_water(str(rng.choice(list(JERLOV_BGR)[:7])), 2.0, float(rng.uniform(0.05, 0.6)))
         dives.append(Backdrop(dive, water, 280.0, SIZE, rng).frame(float(rng.uniform(0.0, 9.0))))
     return rooms, dives
+
+
+def draw_water(rng: np.random.Generator) -> Water | None:
+    """Water between camera and hand, None for most hands."""
+    return make_water(*WATERS.draw(rng)) if rng.uniform() < WATER_SHARE else None
 
 
 def _draw_person(picture: Float32, light: Light, rng: np.random.Generator) -> None:

@@ -7,7 +7,7 @@ landmarks. `left` and `right` say where the thumb points in the picture, whichev
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import cv2
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.camera import draw_camera, photographed
-from lightgesture.synth.crop_surroundings import draw_surroundings
+from lightgesture.synth.crop_surroundings import draw_surroundings, draw_water
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -41,27 +41,27 @@ from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.surface import Forearm, HandView
 from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
 from lightgesture.synth.views import PosedHand
-from lightgesture.synth.water import JERLOV_BGR, Water, WaterRange, make_water
+from lightgesture.synth.water import Water
 
 NONE = "none"
 SIDE_THUMB_PITCH = 1.7
 """People tilt a fist with a stretched thumb more than other signs, because the forearm comes from the side."""
-WATERS = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (float(np.exp(-3.0)), 1.0))
-"""Between camera and hand."""
 MARGIN = 1.6
 """Side of a crop against the larger side of the landmark box."""
 PALM_SHARE: Final = 0.85
 """Share of palms among tokens other than left and right; the others show the back."""
 GLOVE_SHARE: Final = 0.25
 """Share of gloved hands."""
-WATER_SHARE: Final = 0.3
-"""Share of hands seen through water."""
 NONE_SHARE: Final = 0.1
 """Share of shapes that are no token."""
 TURN_DEG: Final = (15.0, 55.0)
 """How much further a ring that is seen from the side is turned, see `CropSettings.sideways`."""
 LOOSENESS: Final = (0.4, 1.4)
 """See `poses.token_pose`."""
+PX_PER_MM: Final = 0.62
+"""Scale at which hands are rendered, doubled in between (`hand.SUPERSAMPLED_LENGTH_PX`)."""
+QUICK_PX_PER_MM: Final = 0.88
+"""Scale of posed hands: just so large that they are not doubled, half of the pixels."""
 BACKDROPS: Final = 16
 """Surroundings of each kind, drawn once."""
 
@@ -83,6 +83,11 @@ class CropSettings:
     stand behind one another."""
     together: float = 0.0
     """Share, 0 to 1, of hands whose stretched fingers lie side by side."""
+    backdrops: int = field(default_factory=lambda: BACKDROPS)
+    """Surroundings of each kind, drawn once, 1 or more; a pair takes as long as ten hands."""
+    atlases: int = 0
+    """Textures of skin, and as many of gloves, that hands share, drawn once; 0: each has its own, which takes a third
+    longer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +111,10 @@ class CropMaker:
     def __init__(self, seed: int, purpose: Purpose = "train", settings: CropSettings | None = None) -> None:
         self.settings = settings or CropSettings()
         self._rng = stream(seed, purpose)
-        self._rooms, self._dives = draw_surroundings(self._rng, BACKDROPS)
+        self._rooms, self._dives = draw_surroundings(self._rng, self.settings.backdrops)
+        self._atlases = [
+            [paint_atlas(self._rng, glove) for _ in range(self.settings.atlases)] for glove in (False, True)
+        ]
 
     def samples(self, count: int) -> Iterator[Crop]:
         """`count` crops, tokens in turn, with a share of `none` strewn in."""
@@ -124,7 +132,7 @@ class CropMaker:
         palm = bool(rng.uniform() < PALM_SHARE)
         if token in SIDE_THUMB_TOKENS:
             palm = shows_palm(token, left, token == SIDE_THUMB_TOKENS[0])
-        water = self._draw_water()
+        water = draw_water(self._rng)
         hand = self._render(shape, left, palm, water)
         side = int(rng.integers(settings.size[0], settings.size[1] + 1))
         return self._framed(hand, token, side, left, palm, water)
@@ -132,19 +140,13 @@ class CropMaker:
     def posed(self, hand: PosedHand, *, dry: bool = False) -> Crop:
         """One crop of a hand with known joints, as it is turned; dry: never seen through water."""
         rng, settings = self._rng, self.settings
-        water = None if dry else self._draw_water()
+        water = None if dry else draw_water(self._rng)
         look, arm = self._draw_look()
-        view = self._view(hand.rotation, hand.left)
+        view = self._view(hand.rotation, hand.left, QUICK_PX_PER_MM)
         image = self._seen(hand.pose, view, look, arm, water)
         side = int(rng.integers(settings.size[0], settings.size[1] + 1))
         palm = bool(hand.rotation[2, 2] > 0.0)
         return self._framed(image, hand.token, side, hand.left, palm, water)
-
-    def _draw_water(self) -> Water | None:
-        rng = self._rng
-        if rng.uniform() >= WATER_SHARE:
-            return None
-        return make_water(*WATERS.draw(rng))
 
     def _render(self, shape: str, left: bool, palm: bool, water: Water | None) -> HandImage:
         rng, settings = self._rng, self.settings
@@ -176,12 +178,16 @@ class CropMaker:
                 float(rng.uniform(1.0, 9.5)), float(rng.uniform(0.3, 1.8)), float(rng.uniform(0.1, 0.9))
             )
         sleeve = SUITS[int(rng.integers(len(SUITS)))]
-        look = HandLook(sample_proportions(rng), tone, paint_atlas(rng, tone.glove), sleeve)
+        look = HandLook(sample_proportions(rng), tone, self._atlas(tone.glove), sleeve)
         bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
         return look, Forearm(110.0, bare)
 
-    def _view(self, rotation: FloatArray, left: bool) -> HandView:
-        return HandView(rotation, (0.0, 0.0), 0.62, float(self._rng.uniform(350.0, 1500.0)), left)
+    def _atlas(self, glove: bool) -> NDArray[np.uint8]:
+        shared = self._atlases[glove]
+        return shared[int(self._rng.integers(len(shared)))] if shared else paint_atlas(self._rng, glove)
+
+    def _view(self, rotation: FloatArray, left: bool, px_per_mm: float = PX_PER_MM) -> HandView:
+        return HandView(rotation, (0.0, 0.0), px_per_mm, float(self._rng.uniform(350.0, 1500.0)), left)
 
     def _seen(
         self, pose: HandPose, view: HandView, look: HandLook, arm: Forearm, water: Water | None

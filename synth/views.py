@@ -30,8 +30,8 @@ THUMB_TOKENS: Final = frozenset({"5", "pic", *SIDE_THUMB_TOKENS})
 """Signs of which the thumb must be seen."""
 TIPS_MAY_MEET: Final = frozenset({"ok", "none"})
 """Signs that are told without counting fingers, a ring by itself."""
-LEAST_GAP: Final = 0.1
-"""Between the tips of stretched fingers in the picture, palm lengths: half of a finger's width."""
+LEAST_GAP: Final = 0.06
+"""From the tip of a stretched finger to another one in the picture, palm lengths: a third of a finger's width."""
 LEAST_REACH: Final = 0.4
 """Of a stretched finger in the picture over its own length: shorter, it points at the camera."""
 LEAST_THUMB: Final = 0.28
@@ -109,9 +109,12 @@ def can_be_told(hand: PosedHand) -> bool:
             return False
     if hand.token in TIPS_MAY_MEET:
         return True
-    tips = seen[[4 + 4 * finger for finger in stretched]]
-    gaps = np.linalg.norm(tips[:, None] - tips[None], axis=2)[np.triu_indices(len(tips), 1)]
-    return bool((gaps >= LEAST_GAP).all())
+    return all(
+        _distance(seen[4 + 4 * one], seen[1 + 4 * other], seen[4 + 4 * other]) >= LEAST_GAP
+        for one in stretched
+        for other in stretched
+        if one != other
+    )
 
 
 def _shows_thumb(seen: FloatArray, points: FloatArray, token: str) -> bool:

@@ -41,8 +41,8 @@ ARM_DEG: Final = np.array([12.0, 7.0])
 """Standard deviations of the wrist's flexion and deviation, which the 21 joints do not tell."""
 ARM_MEAN_DEG: Final = np.array([-4.0, -2.0])
 """Their means, as of other rendered hands."""
-CROPS: Final = CropSettings()
-"""How large posed hands are."""
+CROPS: Final = CropSettings(backdrops=3, atlases=6)
+"""Every task draws anew what its hands share."""
 
 
 def posed(

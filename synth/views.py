@@ -25,14 +25,14 @@ PITCH_DEG: Final = 14.0
 ROLL_DEG: Final = 12.0
 """Standard deviation of the turn in the picture."""
 TRIES: Final = 8
-"""Views that are tried, each of them turned less far than the last, before a hand stays as it was."""
+"""Views that are tried, each of them turned less far than the last."""
 THUMB_TOKENS: Final = frozenset({"5", "pic", *SIDE_THUMB_TOKENS})
 """Signs of which the thumb must be seen."""
 TIPS_MAY_MEET: Final = frozenset({"ok", "none"})
 """Signs that are told without counting fingers, a ring by itself."""
 LEAST_GAP: Final = 0.06
 """From the tip of a stretched finger to another one in the picture, palm lengths: a third of a finger's width."""
-LEAST_REACH: Final = 0.4
+LEAST_REACH: Final = 0.55
 """Of a stretched finger in the picture over its own length: shorter, it points at the camera."""
 LEAST_THUMB: Final = 0.28
 """From the thumb's tip to the palm and the index finger, palm lengths: clear of both by a part of its width."""
@@ -72,11 +72,10 @@ class PosedHand:
         return float(np.degrees(np.arccos(min(abs(float(self.rotation[2, 2])), 1.0))))
 
 
-def turned_away(hand: PosedHand, rng: np.random.Generator, largest: float = LARGEST_TURN_DEG) -> PosedHand:
-    """The hand in another view, up to `largest` degrees, 0 to 90, in which its sign is told.
-
-    If none is found, the hand as it is.
-    """
+def turned_away(
+    hand: PosedHand, rng: np.random.Generator, largest: float = LARGEST_TURN_DEG
+) -> PosedHand | None:
+    """The hand in another view, up to `largest` degrees, 0 to 90, in which its sign is told; None if none is found."""
     for attempt in range(TRIES):
         yaw = rng.uniform(-largest, largest) * (1.0 - attempt / TRIES)
         by = (
@@ -87,7 +86,7 @@ def turned_away(hand: PosedHand, rng: np.random.Generator, largest: float = LARG
         other = hand.turned(by)
         if other.turn_deg() <= largest and can_be_told(other):
             return other
-    return hand
+    return None
 
 
 def can_be_told(hand: PosedHand) -> bool:

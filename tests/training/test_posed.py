@@ -150,3 +150,11 @@ def test_no_pose_of_a_hand_that_is_kept_from_the_net_is_used(manifest, monkeypat
     monkeypatch.setattr(posed_module, "kept_out", lambda hands: kept)
     samples = list(posed(originals, PoolSettings(), 0, 4, np.random.default_rng(0)))
     assert {sample.token for sample in samples} == {"5"}
+
+
+def test_no_hand_is_drawn_that_shows_its_sign_in_no_view(manifest):
+    originals = read(manifest)
+    fists = np.tile(originals.poses.angles[NAMES.index("0")], (len(NAMES), 1, 1))
+    hidden = replace(originals, poses=replace(originals.poses, angles=fists))
+    samples = list(posed(hidden, PoolSettings(), 0, 11, np.random.default_rng(0)))
+    assert not {sample.token for sample in samples} & {"5", "left", "right"}

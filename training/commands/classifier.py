@@ -58,7 +58,7 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
         "--posed",
         type=whole,
         metavar="N",
-        help="rendered hands in the poses of real ones, where `world_NAME.npz` beside the manifest NAME.csv tells their "
+        help="rendered hands in the poses of real ones, if `world_NAME.npz` beside the manifest NAME.csv tells their "
         "joints (default: 20000)",
     )
     parser.add_argument(

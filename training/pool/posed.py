@@ -41,6 +41,8 @@ ARM_DEG: Final = np.array([12.0, 7.0])
 """Standard deviations of the wrist's flexion and deviation, which the 21 joints do not tell."""
 ARM_MEAN_DEG: Final = np.array([-4.0, -2.0])
 """Their means, as of other rendered hands."""
+TRIES: Final = 10
+"""Poses that are tried for a hand."""
 CROPS: Final = CropSettings(backdrops=3, atlases=6)
 """Every task draws anew what its hands share."""
 
@@ -57,6 +59,8 @@ def posed(
     places, looks = behind(originals), DiveLooks.of(originals.divers)
     for number in range(first, last):
         hand = draw_posed(poses, number, random)
+        if hand is None:
+            continue
         is_dive = len(looks) > 0 and random.random() < DIVES
         crop = maker.posed(hand, dry=is_dive)
         image = crop.image
@@ -76,11 +80,21 @@ def posed(
         )
 
 
-def draw_posed(poses: Poses, number: int, random: Random) -> PosedHand:
-    """A hand of the class whose turn it is, posed as one of the real ones, in another view."""
+def draw_posed(poses: Poses, number: int, random: Random) -> PosedHand | None:
+    """A hand of the class whose turn it is, posed as one of the real ones, in another view.
+
+    None if none of some poses shows its sign in any view.
+    """
     classes = np.unique(poses.tokens)
     rows = np.flatnonzero(poses.tokens == classes[number % len(classes)])
-    row = int(rows[int(random.integers(len(rows)))])
+    for _ in range(TRIES):
+        hand = _in_another_view(poses, int(rows[int(random.integers(len(rows)))]), random)
+        if hand is not None:
+            return hand.mirrored() if random.random() < 0.5 else hand
+    return None
+
+
+def _in_another_view(poses: Poses, row: int, random: Random) -> PosedHand | None:
     token = str(poses.tokens[row])
     angles = with_hidden_bends(poses.angles[row], token, random) + random.normal(0.0, NOISE_DEG, (5, 4))
     if random.random() < TOGETHER:
@@ -89,5 +103,4 @@ def draw_posed(poses: Poses, number: int, random: Random) -> PosedHand:
     hand = PosedHand(pose, poses.rotations[row], False, token)
     if random.random() < BACKS:
         hand = hand.turned_round()
-    hand = turned_away(hand, random)
-    return hand.mirrored() if random.random() < 0.5 else hand
+    return turned_away(hand, random)

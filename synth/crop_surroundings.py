@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Any, Final
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from lightgesture.synth.backdrop import Backdrop, BackdropLook
 from lightgesture.synth.body import BodyLook, Camera, render_body
+from lightgesture.synth.hand import decode
 from lightgesture.synth.raster import Float32
 from lightgesture.synth.room import Room, RoomLook
 from lightgesture.synth.shading import Light, triple
@@ -21,6 +24,12 @@ WATERS: Final = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (float(np.exp(-3.0
 """Between camera and hand."""
 WATER_SHARE: Final = 0.3
 """Share of hands seen through water."""
+PLAIN_SHARE: Final = 0.2
+"""Share of hands before one even colour."""
+WINDOW: Final = (60, 200)
+"""Side of what is seen of a surrounding, pixels."""
+PART: Final = (0.25, 1.0)
+"""Side of what is seen of a photograph, over its shorter side."""
 PERSON_SHARE: Final = 0.6
 """Share of rooms with somebody in them."""
 
@@ -50,6 +59,33 @@ def draw_surroundings(rng: np.random.Generator, count: int) -> tuple[list[Float3
 def draw_water(rng: np.random.Generator) -> Water | None:
     """Water between camera and hand, None for most hands."""
     return make_water(*WATERS.draw(rng)) if rng.uniform() < WATER_SHARE else None
+
+
+def window_of(
+    surroundings: list[Float32], water: Water | None, size: int, rng: np.random.Generator
+) -> Float32:
+    """A random window of one of the surroundings, or now and then an even colour, (size, size, 3); water: before it."""
+    if rng.uniform() < PLAIN_SHARE:
+        plain = water.veil if water is not None else rng.uniform(0.01, 0.9) * rng.uniform(0.7, 1.0, 3)
+        return np.asarray(np.broadcast_to(plain, (size, size, 3)), np.float32).copy()
+    source = surroundings[int(rng.integers(len(surroundings)))]
+    span = int(rng.integers(*WINDOW))
+    x, y = int(rng.integers(0, source.shape[1] - span)), int(rng.integers(0, source.shape[0] - span))
+    window = _perhaps_mirrored(source[y : y + span, x : x + span], rng)
+    return np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_LINEAR), np.float32)
+
+
+def part_of(photograph: NDArray[np.uint8], size: int, rng: np.random.Generator) -> Float32:
+    """A random part of a photograph, uint8 BGR, as linear light, (size, size, 3)."""
+    rows, columns = photograph.shape[:2]
+    span = max(2, int(min(rows, columns) * rng.uniform(*PART)))
+    y, x = int(rng.integers(rows - span + 1)), int(rng.integers(columns - span + 1))
+    window = _perhaps_mirrored(photograph[y : y + span, x : x + span], rng)
+    return decode(np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_AREA), np.uint8))
+
+
+def _perhaps_mirrored(window: NDArray[Any], rng: np.random.Generator) -> NDArray[Any]:
+    return window[:, ::-1] if rng.uniform() < 0.5 else window
 
 
 def _draw_person(picture: Float32, light: Light, rng: np.random.Generator) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lightgesture.synth.atlas import paint_atlas
 from lightgesture.synth.camera import draw_camera, photographed
-from lightgesture.synth.crop_surroundings import draw_surroundings, draw_water
+from lightgesture.synth.crop_surroundings import draw_surroundings, draw_water, part_of, window_of
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -137,8 +137,9 @@ class CropMaker:
         side = int(rng.integers(settings.size[0], settings.size[1] + 1))
         return self._framed(hand, token, side, left, palm, water)
 
-    def posed(self, hand: PosedHand, *, dry: bool = False) -> Crop:
-        """One crop of a hand with known joints, as it is turned; dry: never seen through water."""
+    def posed(self, hand: PosedHand, *, dry: bool = False, place: NDArray[np.uint8] | None = None) -> Crop:
+        """One crop of a hand with known joints, as it is turned; dry: never seen through water. place: picture, BGR,
+        part of which is behind the hand, in place of a rendered one."""
         rng, settings = self._rng, self.settings
         water = None if dry else draw_water(self._rng)
         look, arm = self._draw_look()
@@ -146,7 +147,7 @@ class CropMaker:
         image = self._seen(hand.pose, view, look, arm, water)
         side = int(rng.integers(settings.size[0], settings.size[1] + 1))
         palm = bool(hand.rotation[2, 2] > 0.0)
-        return self._framed(image, hand.token, side, hand.left, palm, water)
+        return self._framed(image, hand.token, side, hand.left, palm, water, place)
 
     def _render(self, shape: str, left: bool, palm: bool, water: Water | None) -> HandImage:
         rng, settings = self._rng, self.settings
@@ -202,7 +203,14 @@ class CropMaker:
         )
 
     def _framed(
-        self, hand: HandImage, token: str, side: int, left: bool, palm: bool, water: Water | None
+        self,
+        hand: HandImage,
+        token: str,
+        side: int,
+        left: bool,
+        palm: bool,
+        water: Water | None,
+        place: NDArray[np.uint8] | None = None,
     ) -> Crop:
         rng = self._rng
         low, high = hand.landmarks[:, :2].min(axis=0), hand.landmarks[:, :2].max(axis=0)
@@ -210,7 +218,10 @@ class CropMaker:
         corner = 0.5 * (low + high) - 0.5 * extent + rng.normal(0.0, 0.02, 2) * extent
         whole = round(extent)
         shifted = replace(hand, origin=(hand.origin[0] - round(corner[0]), hand.origin[1] - round(corner[1])))
-        picture = self._background(whole, water)
+        if place is None:
+            picture = window_of(self._rooms if water is None else self._dives, water, whole, rng)
+        else:
+            picture = part_of(place, whole, rng)
         shifted.paste(picture)
         scale = side / whole
         interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
@@ -227,18 +238,3 @@ class CropMaker:
         )  # fmt: skip
         landmarks = (hand.landmarks[:, :2] + np.array(offset)) * scale
         return Crop(image, token, box, landmarks, left, palm, cover)
-
-    def _background(self, size: int, water: Water | None) -> Float32:
-        """A random window of the surroundings, or now and then a plain one, (size, size, 3)."""
-        rng = self._rng
-        if rng.uniform() < 0.2:
-            plain = water.veil if water is not None else rng.uniform(0.01, 0.9) * rng.uniform(0.7, 1.0, 3)
-            return np.asarray(np.broadcast_to(plain, (size, size, 3)), np.float32).copy()
-        pool = self._rooms if water is None else self._dives
-        source = pool[int(rng.integers(len(pool)))]
-        span = int(rng.integers(60, 200))
-        x, y = int(rng.integers(0, source.shape[1] - span)), int(rng.integers(0, source.shape[0] - span))
-        window = source[y : y + span, x : x + span]
-        if rng.uniform() < 0.5:
-            window = window[:, ::-1]
-        return np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_LINEAR), np.float32)

@@ -79,7 +79,7 @@ BENT_DEG = 50.0
 """A finger of a token whose middle joint is bent more is a bent one."""
 LEAST_BENT_DEG, MOST_STRETCHED_DEG = 40.0, 80.0
 """MCP and PIP flexion together of a measured finger that the sign bends, at least, and of a stretched one, at most."""
-HIDDEN_PART = (0.3, 0.8)
+HIDDEN_PART = (0.5, 0.9)
 """How far hidden joints are moved from what was measured to what the sign asks for."""
 
 TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {

@@ -124,7 +124,7 @@ def augment(
     if canvas.landmarks is not None:
         mask = hand_mask(canvas.landmarks, CANVAS, FINGER_WIDTH)
         if len(backgrounds) and random.random() < settings.background:
-            image = before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
+            image = _before(image, mask, backgrounds[int(random.integers(len(backgrounds)))], random)
     image = relight(image, mask, settings.light, random) if finish is None else finish(image, mask, random)
     return image, shifted_box(_box(canvas), settings, random), token
 
@@ -194,8 +194,8 @@ def _box(canvas: _Canvas) -> Box:
     )
 
 
-def before(image: Image, mask: NDArray[np.float32], background: Image, random: Random) -> Image:
-    """A square picture's hand before a random part of another picture; mask: float32, 1 on the hand."""
+def _before(image: Image, mask: NDArray[np.float32], background: Image, random: Random) -> Image:
+    """The hand before a random part of another picture."""
     size = image.shape[0]
     rows, columns = background.shape[:2]
     side = max(2, int(min(rows, columns) * random.uniform(0.25, 1.0)))

@@ -13,7 +13,7 @@ from lightgesture.synth.crops import CropMaker, CropSettings
 from lightgesture.synth.poses import bring_together, with_hidden_bends
 from lightgesture.synth.skeleton import HandPose
 from lightgesture.synth.views import PosedHand, turned_away
-from lightgesture.training.pictures.augment import before, shifted_box
+from lightgesture.training.pictures.augment import shifted_box
 from lightgesture.training.pool.altered import behind
 from lightgesture.training.pool.diver_kinds import DiveLooks
 from lightgesture.training.pool.joints import Poses
@@ -62,10 +62,10 @@ def posed(
         if hand is None:
             continue
         is_dive = len(looks) > 0 and random.random() < DIVES
-        crop = maker.posed(hand, dry=is_dive)
+        is_elsewhere = len(places) > 0 and random.random() < ELSEWHERE
+        place = places[int(random.integers(len(places)))] if is_elsewhere else None
+        crop = maker.posed(hand, dry=is_dive, place=place)
         image = crop.image
-        if places and random.random() < ELSEWHERE:
-            image = before(image, crop.cover, places[int(random.integers(len(places)))], random)
         if is_dive:
             image = looks.give(image, crop.cover, max(crop.box[2:]), random)
         yield TrainingSample(

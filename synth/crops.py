@@ -7,7 +7,7 @@ landmarks. `left` and `right` say where the thumb points in the picture, whichev
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import cv2
@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.synth.atlas import paint_atlas
-from lightgesture.synth.backdrop import Backdrop, BackdropLook
-from lightgesture.synth.body import BodyLook, Camera, render_body
 from lightgesture.synth.camera import draw_camera, photographed
+from lightgesture.synth.crop_surroundings import draw_surroundings, draw_water, part_of, window_of
 from lightgesture.synth.hand import Box, HandImage, HandLook, render_hand
 from lightgesture.synth.poses import (
     OTHER_SHAPES,
@@ -29,35 +28,40 @@ from lightgesture.synth.poses import (
     token_pose,
 )
 from lightgesture.synth.raster import Float32
-from lightgesture.synth.room import Room, RoomLook
-from lightgesture.synth.shading import Light, draw_light, triple
-from lightgesture.synth.skeleton import FloatArray, rotation_x, rotation_y, rotation_z, sample_proportions
+from lightgesture.synth.shading import draw_light
+from lightgesture.synth.skeleton import (
+    FloatArray,
+    HandPose,
+    rotation_x,
+    rotation_y,
+    rotation_z,
+    sample_proportions,
+)
 from lightgesture.synth.skin import glove_tone, skin_tone
 from lightgesture.synth.surface import Forearm, HandView
 from lightgesture.synth.variety import GLOVES, SUITS, Purpose, stream
-from lightgesture.synth.water import JERLOV_BGR, Water, WaterRange, make_water
+from lightgesture.synth.views import PosedHand
+from lightgesture.synth.water import Water
 
 NONE = "none"
 SIDE_THUMB_PITCH = 1.7
 """People tilt a fist with a stretched thumb more than other signs, because the forearm comes from the side."""
-WATERS = WaterRange(tuple(JERLOV_BGR)[:9], (0.5, 8.0), (float(np.exp(-3.0)), 1.0))
-"""Between camera and hand."""
 MARGIN = 1.6
 """Side of a crop against the larger side of the landmark box."""
 PALM_SHARE: Final = 0.85
 """Share of palms among tokens other than left and right; the others show the back."""
 GLOVE_SHARE: Final = 0.25
 """Share of gloved hands."""
-WATER_SHARE: Final = 0.3
-"""Share of hands seen through water."""
 NONE_SHARE: Final = 0.1
 """Share of shapes that are no token."""
-PERSON_SHARE: Final = 0.6
-"""Share of rooms with somebody in them."""
 TURN_DEG: Final = (15.0, 55.0)
 """How much further a ring that is seen from the side is turned, see `CropSettings.sideways`."""
 LOOSENESS: Final = (0.4, 1.4)
 """See `poses.token_pose`."""
+PX_PER_MM: Final = 0.62
+"""Scale at which hands are rendered, doubled in between (`hand.SUPERSAMPLED_LENGTH_PX`)."""
+QUICK_PX_PER_MM: Final = 0.88
+"""Scale of posed hands: just so large that they are not doubled, half of the pixels."""
 BACKDROPS: Final = 16
 """Surroundings of each kind, drawn once."""
 
@@ -79,12 +83,17 @@ class CropSettings:
     stand behind one another."""
     together: float = 0.0
     """Share, 0 to 1, of hands whose stretched fingers lie side by side."""
+    backdrops: int = field(default_factory=lambda: BACKDROPS)
+    """Surroundings of each kind, drawn once, 1 or more; a pair takes as long as ten hands."""
+    atlases: int = 0
+    """Textures of skin, and as many of gloves, that hands share, drawn once; 0: each has its own, which takes a third
+    longer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Crop:
     """image: uint8 (n, n, 3) BGR. token: one of the ten or "none". box: outline of the hand, pixels of `image`.
-    landmarks: (21, 2), pixels. left: a left hand. palm: its palm is seen.
+    landmarks: (21, 2), pixels. left: a left hand. palm: its palm is seen. cover: float32 (n, n), 0..1, of hand and arm.
     """
 
     image: NDArray[np.uint8]
@@ -93,6 +102,7 @@ class Crop:
     landmarks: FloatArray
     left: bool
     palm: bool
+    cover: Float32
 
 
 class CropMaker:
@@ -101,7 +111,10 @@ class CropMaker:
     def __init__(self, seed: int, purpose: Purpose = "train", settings: CropSettings | None = None) -> None:
         self.settings = settings or CropSettings()
         self._rng = stream(seed, purpose)
-        self._rooms, self._dives = self._surroundings()
+        self._rooms, self._dives = draw_surroundings(self._rng, self.settings.backdrops)
+        self._atlases = [
+            [paint_atlas(self._rng, glove) for _ in range(self.settings.atlases)] for glove in (False, True)
+        ]
 
     def samples(self, count: int) -> Iterator[Crop]:
         """`count` crops, tokens in turn, with a share of `none` strewn in."""
@@ -119,67 +132,26 @@ class CropMaker:
         palm = bool(rng.uniform() < PALM_SHARE)
         if token in SIDE_THUMB_TOKENS:
             palm = shows_palm(token, left, token == SIDE_THUMB_TOKENS[0])
-        water = self._draw_water()
+        water = draw_water(self._rng)
         hand = self._render(shape, left, palm, water)
         side = int(rng.integers(settings.size[0], settings.size[1] + 1))
         return self._framed(hand, token, side, left, palm, water)
 
-    def _surroundings(self) -> tuple[list[Float32], list[Float32]]:
-        rng, size = self._rng, (320, 240)
-        rooms, dives = [], []
-        for _ in range(BACKDROPS):
-            look = RoomLook(
-                wall=int(rng.integers(6)), pieces=int(rng.integers(0, 14)), lamps=int(rng.integers(3)),
-                window=float(rng.uniform(0.8, 2.5)) if rng.uniform() < 0.3 else 0.0,
-                level=float(rng.uniform(0.3, 1.2)), blur=float(rng.uniform(0.0, 0.02)),
-            )  # fmt: skip
-            room = Room(look, size, rng)
-            picture = room.frame(0.0)
-            if rng.uniform() < PERSON_SHARE:
-                self._draw_person(picture, room.light(rng))
-            rooms.append(picture)
-            floor = str(rng.choice(("sand", "tiles", "rocks")))
-            surface = float(rng.uniform(0.3, 0.9)) if rng.uniform() < 0.5 else 0.0
-            dive = BackdropLook(floor, float(rng.uniform(0.5, 3.0)), surface, float(rng.uniform(0.2, 0.7)))
-            water = make_water(str(rng.choice(list(JERLOV_BGR)[:7])), 2.0, float(rng.uniform(0.05, 0.6)))
-            dives.append(Backdrop(dive, water, 280.0, size, rng).frame(float(rng.uniform(0.0, 9.0))))
-        return rooms, dives
-
-    def _draw_person(self, picture: Float32, light: Light) -> None:
-        """Somebody behind the hand, as in most pictures from webcams: face, hair and a shirt."""
-        rng = self._rng
-        blue, green, red = triple(skin_tone(float(rng.uniform(1.0, 9.5))).back)
-        look = BodyLook(
-            suit_bgr=triple(rng.uniform(0.01, 0.7, 3)), accent_bgr=triple(rng.uniform(0.01, 0.7, 3)),
-            skin_bgr=(blue, green, red), hood_bgr=triple(rng.uniform(0.005, 0.12) * np.array([0.5, 0.7, 1.0])),
-            hood=False, mask=False, regulator=False, legs=False,
-        )  # fmt: skip
-        size = (picture.shape[1], picture.shape[0])
-        camera = Camera(float(size[0]), (0.5 * size[0], 0.5 * size[1]))
-        place = np.array([rng.normal(0.0, 200.0), rng.normal(-120.0, 80.0), rng.uniform(500.0, 1100.0)])
-        wrists = (np.array([260.0, -400.0, 60.0]), np.array([-260.0, -400.0, 60.0]))
-        turn = rotation_y(rng.normal(0.0, 20.0)) @ rotation_z(rng.normal(0.0, 6.0))
-        radiance, cover = render_body(look, turn, place, wrists, camera, size, light)
-        picture *= 1.0 - cover[..., None]
-        picture += radiance
-
-    def _draw_water(self) -> Water | None:
-        rng = self._rng
-        if rng.uniform() >= WATER_SHARE:
-            return None
-        return make_water(*WATERS.draw(rng))
+    def posed(self, hand: PosedHand, *, dry: bool = False, place: NDArray[np.uint8] | None = None) -> Crop:
+        """One crop of a hand with known joints, as it is turned; dry: never seen through water. place: picture, BGR,
+        part of which is behind the hand, in place of a rendered one."""
+        rng, settings = self._rng, self.settings
+        water = None if dry else draw_water(self._rng)
+        look, arm = self._draw_look()
+        view = self._view(hand.rotation, hand.left, QUICK_PX_PER_MM)
+        image = self._seen(hand.pose, view, look, arm, water)
+        side = int(rng.integers(settings.size[0], settings.size[1] + 1))
+        palm = bool(hand.rotation[2, 2] > 0.0)
+        return self._framed(image, hand.token, side, hand.left, palm, water, place)
 
     def _render(self, shape: str, left: bool, palm: bool, water: Water | None) -> HandImage:
         rng, settings = self._rng, self.settings
-        if rng.uniform() < GLOVE_SHARE:
-            tone = glove_tone(GLOVES[int(rng.integers(len(GLOVES)))])
-        else:
-            tone = skin_tone(
-                float(rng.uniform(1.0, 9.5)), float(rng.uniform(0.3, 1.8)), float(rng.uniform(0.1, 0.9))
-            )
-        sleeve = SUITS[int(rng.integers(len(SUITS)))]
-        look = HandLook(sample_proportions(rng), tone, paint_atlas(rng, tone.glove), sleeve)
-        bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
+        look, arm = self._draw_look()
         yaw = TOKEN_YAW_DEG.get(shape, 0.0) + rng.normal(0.0, settings.yaw) + (0.0 if palm else 180.0)
         if shape in TOKEN_YAW_DEG and settings.sideways and rng.uniform() < settings.sideways:
             yaw += rng.uniform(*TURN_DEG)
@@ -192,10 +164,38 @@ class CropMaker:
             )
             @ rotation_y(sign * yaw)
         )
-        view = HandView(rotation, (0.0, 0.0), 0.62, float(rng.uniform(350.0, 1500.0)), left)
+        view = self._view(rotation, left)
         together = settings.together > 0.0 and bool(rng.uniform() < settings.together)
         pose = token_pose(shape, rng, float(rng.uniform(*LOOSENESS)), together=together)
-        hand = render_hand(pose, view, look, draw_light(rng, water), Forearm(110.0, bare))
+        return self._seen(pose, view, look, arm, water)
+
+    def _draw_look(self) -> tuple[HandLook, Forearm]:
+        """Somebody's hand, bare or in a glove, and the sleeve below."""
+        rng = self._rng
+        if rng.uniform() < GLOVE_SHARE:
+            tone = glove_tone(GLOVES[int(rng.integers(len(GLOVES)))])
+        else:
+            tone = skin_tone(
+                float(rng.uniform(1.0, 9.5)), float(rng.uniform(0.3, 1.8)), float(rng.uniform(0.1, 0.9))
+            )
+        sleeve = SUITS[int(rng.integers(len(SUITS)))]
+        look = HandLook(sample_proportions(rng), tone, self._atlas(tone.glove), sleeve)
+        bare = None if rng.uniform() < 0.5 else float(rng.uniform(5.0, 80.0))
+        return look, Forearm(110.0, bare)
+
+    def _atlas(self, glove: bool) -> NDArray[np.uint8]:
+        shared = self._atlases[glove]
+        return shared[int(self._rng.integers(len(shared)))] if shared else paint_atlas(self._rng, glove)
+
+    def _view(self, rotation: FloatArray, left: bool, px_per_mm: float = PX_PER_MM) -> HandView:
+        return HandView(rotation, (0.0, 0.0), px_per_mm, float(self._rng.uniform(350.0, 1500.0)), left)
+
+    def _seen(
+        self, pose: HandPose, view: HandView, look: HandLook, arm: Forearm, water: Water | None
+    ) -> HandImage:
+        """The hand in some light, through the water before it."""
+        rng = self._rng
+        hand = render_hand(pose, view, look, draw_light(rng, water), arm)
         if water is None:
             return hand
         return replace(
@@ -203,7 +203,14 @@ class CropMaker:
         )
 
     def _framed(
-        self, hand: HandImage, token: str, side: int, left: bool, palm: bool, water: Water | None
+        self,
+        hand: HandImage,
+        token: str,
+        side: int,
+        left: bool,
+        palm: bool,
+        water: Water | None,
+        place: NDArray[np.uint8] | None = None,
     ) -> Crop:
         rng = self._rng
         low, high = hand.landmarks[:, :2].min(axis=0), hand.landmarks[:, :2].max(axis=0)
@@ -211,11 +218,17 @@ class CropMaker:
         corner = 0.5 * (low + high) - 0.5 * extent + rng.normal(0.0, 0.02, 2) * extent
         whole = round(extent)
         shifted = replace(hand, origin=(hand.origin[0] - round(corner[0]), hand.origin[1] - round(corner[1])))
-        picture = self._background(whole, water)
+        if place is None:
+            picture = window_of(self._rooms if water is None else self._dives, water, whole, rng)
+        else:
+            picture = part_of(place, whole, rng)
         shifted.paste(picture)
         scale = side / whole
         interpolation = cv2.INTER_AREA if scale < 1.0 else cv2.INTER_LINEAR
         picture = np.asarray(cv2.resize(picture, (side, side), interpolation=interpolation), np.float32)
+        cover = np.zeros((whole, whole), np.float32)
+        shifted.cover(cover)
+        cover = np.asarray(cv2.resize(cover, (side, side), interpolation=interpolation), np.float32)
         image = photographed(picture, draw_camera(rng), rng)
         offset = (-round(corner[0]), -round(corner[1]))
         x, y, width, height = hand.box
@@ -224,19 +237,4 @@ class CropMaker:
             max(round(width * scale), 1), max(round(height * scale), 1),
         )  # fmt: skip
         landmarks = (hand.landmarks[:, :2] + np.array(offset)) * scale
-        return Crop(image, token, box, landmarks, left, palm)
-
-    def _background(self, size: int, water: Water | None) -> Float32:
-        """A random window of the surroundings, or now and then a plain one, (size, size, 3)."""
-        rng = self._rng
-        if rng.uniform() < 0.2:
-            plain = water.veil if water is not None else rng.uniform(0.01, 0.9) * rng.uniform(0.7, 1.0, 3)
-            return np.asarray(np.broadcast_to(plain, (size, size, 3)), np.float32).copy()
-        pool = self._rooms if water is None else self._dives
-        source = pool[int(rng.integers(len(pool)))]
-        span = int(rng.integers(60, 200))
-        x, y = int(rng.integers(0, source.shape[1] - span)), int(rng.integers(0, source.shape[0] - span))
-        window = source[y : y + span, x : x + span]
-        if rng.uniform() < 0.5:
-            window = window[:, ::-1]
-        return np.asarray(cv2.resize(window, (size, size), interpolation=cv2.INTER_LINEAR), np.float32)
+        return Crop(image, token, box, landmarks, left, palm, cover)

@@ -8,6 +8,7 @@ variants, because people sign differently: between them poses are mixed, spread 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lightgesture.synth.skeleton import FloatArray, HandPose
 
@@ -74,6 +75,13 @@ TOGETHER_SPREAD_DEG = 1.5
 STRETCHED_DEG = 60.0
 """A finger whose middle joint is bent less is stretched."""
 
+BENT_DEG = 50.0
+"""A finger of a token whose middle joint is bent more is a bent one."""
+LEAST_BENT_DEG, MOST_STRETCHED_DEG = 40.0, 80.0
+"""MCP and PIP flexion together of a measured finger that the sign bends, at least, and of a stretched one, at most."""
+HIDDEN_PART = (0.5, 0.9)
+"""How far hidden joints are moved from what was measured to what the sign asks for."""
+
 TOKEN_SHAPES: dict[str, tuple[FloatArray, ...]] = {
     "0": tuple(_shape(thumb) for thumb in THUMBS_FIST),
     "1": tuple(_shape(thumb, 1, abduction=POINTING) for thumb in THUMBS_OVER_MIDDLE),
@@ -124,10 +132,45 @@ def token_pose(
     angles = variants[0] + (own - variants[0]) * min(OWN_WAY_PER_LOOSENESS * looseness, 1.0)
     angles = _loosened(angles, token, rng, looseness)
     if together:
-        stretched = angles[1:, 2] < STRETCHED_DEG
-        angles[1:, 1] = np.where(stretched, TOGETHER + rng.normal(0.0, TOGETHER_SPREAD_DEG, 4), angles[1:, 1])
+        angles = bring_together(angles, rng)
     wrist = rng.normal([-4.0, -2.0], [12.0, 7.0]) * looseness
     return HandPose(angles, wrist).clipped()
+
+
+def bring_together(angles: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Angles (5, 4) with the stretched fingers side by side."""
+    together = angles.copy()
+    beside = TOGETHER + rng.normal(0.0, TOGETHER_SPREAD_DEG, 4)
+    together[1:, 1] = np.where(angles[1:, 2] < STRETCHED_DEG, beside, angles[1:, 1])
+    return together
+
+
+def agrees(angles: FloatArray, token: str) -> bool:
+    """Whether measured angles (5, 4) stretch and bend the fingers that the sign does; always for what is no token."""
+    if token not in TOKEN_SHAPES:
+        return True
+    bent = _bent(TOKEN_SHAPES[token][0])
+    towards_palm = angles[1:, 0] + angles[1:, 2]
+    return bool(np.where(bent, towards_palm >= LEAST_BENT_DEG, towards_palm <= MOST_STRETCHED_DEG).all())
+
+
+def with_hidden_bends(angles: FloatArray, token: str, rng: np.random.Generator) -> FloatArray:
+    """Measured angles (5, 4) with what the sign bends moved on towards one of its variants.
+
+    Of fingertips that hide in the palm, and of the thumb on them, detectors guess too small a bend.
+    """
+    if token not in TOKEN_SHAPES:
+        return angles
+    variants = TOKEN_SHAPES[token]
+    shape = variants[int(rng.integers(len(variants)))]
+    moved = np.concatenate([[token not in FREE_THUMB], _bent(shape)])
+    part = rng.uniform(*HIDDEN_PART)
+    return np.asarray(angles + np.where(moved[:, None], part * (shape - angles), 0.0))
+
+
+def _bent(shape: FloatArray) -> NDArray[np.bool_]:
+    """Which of the four fingers a sign bends."""
+    return np.asarray(shape[1:, 2] >= BENT_DEG)
 
 
 def _loosened(angles: FloatArray, token: str, rng: np.random.Generator, looseness: float) -> FloatArray:

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from lightgesture._version import __version__
 from lightgesture.models import NONE
-from lightgesture.training.pool.kept_sources import LEAST_FITTED, ONE_IN, HeldOut
+from lightgesture.training.pool.kept_hands import ONE_IN
+from lightgesture.training.pool.kept_sources import LEAST_FITTED, HeldOut
 from lightgesture.training.pool.originals import Originals
 from lightgesture.training.pool.patch_kinds import RENDERED_SOURCE
 from lightgesture.training.pool.patch_pool import PatchPool
+from lightgesture.training.pool.posed import POSED_SOURCE
 from lightgesture.training.pool.samples import HandRow
 
 THRESHOLDS: Final = (0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98)
@@ -128,6 +130,7 @@ def data_section(
         },
         "left_out": list(without),
         "rendered_hands": int(np.char.startswith(pool.sources, f"{RENDERED_SOURCE} ").sum()),
+        "posed_hands": int(np.char.startswith(pool.sources, f"{POSED_SOURCE} ").sum()),
         "patches": len(pool.tokens),
     }
 

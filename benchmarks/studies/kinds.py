@@ -32,7 +32,7 @@ from lightgesture.errors import InputError
 from lightgesture.training.commands.train_cnn import SIZES
 from lightgesture.training.datasets import fold_of
 from lightgesture.training.nets.cnn import CnnTraining
-from lightgesture.training.pool.kept_sources import kept_out
+from lightgesture.training.pool.kept_hands import kept_out
 from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import rows_without
 
@@ -61,7 +61,12 @@ def changed(pool: PoolSettings, copy: Mapping[str, float], light: Mapping[str, f
 
 def without_rendered(pool: PoolSettings) -> PoolSettings:
     """The same pool of pictures alone."""
-    return replace(pool, rendered=0)
+    return replace(pool, rendered=0, posed=0)
+
+
+def without_posed(pool: PoolSettings) -> PoolSettings:
+    """The same pool without rendered hands in the poses of real ones."""
+    return replace(pool, posed=0)
 
 
 def without_mild(pool: PoolSettings) -> PoolSettings:
@@ -85,6 +90,7 @@ POOLS: Mapping[str, Change] = {
     **{name: _leaving_out(name) for name in WITHOUT},
     "no mild copies": without_mild,
     "no rendered hands": without_rendered,
+    "no posed hands": without_posed,
     NOTHING: with_nothing,
 }
 """What becomes of a pool's settings, by the name of the row."""

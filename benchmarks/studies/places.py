@@ -25,7 +25,8 @@ from lightgesture.training.model_files import write_cnn_model
 from lightgesture.training.nets.cnn import CnnTraining, net_settings
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.pool.divers import SOURCE
-from lightgesture.training.pool.kept_sources import held_out_hands, kept_out
+from lightgesture.training.pool.kept_hands import kept_out
+from lightgesture.training.pool.kept_sources import held_out_hands
 from lightgesture.training.pool.originals import Originals
 from lightgesture.training.pool.patch_kinds import MARGIN
 from lightgesture.training.pool.patch_pool import rows_without

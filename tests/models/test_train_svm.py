@@ -7,7 +7,8 @@ import pytest
 from lightgesture.features.vector import block_lengths
 from lightgesture.models import ModelError
 from lightgesture.models.svm import SvmClassifier
-from lightgesture.training.pool.kept_sources import ONE_IN, assign_folds, kept_samples
+from lightgesture.training.pool.kept_hands import ONE_IN
+from lightgesture.training.pool.kept_sources import assign_folds, kept_samples
 from lightgesture.training.samples import TrainingSample
 from lightgesture.training.svm.machine import (
     UNFITTED_TEMPERATURE,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lightgesture.training.pool.kept_sources import kept_out
+from lightgesture.training.pool.kept_hands import kept_out
 from lightgesture.training.pool.samples import LabelledHand
 
 

@@ -60,6 +60,13 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
         help="altered copies of each hand, and a third as many mild ones (default: 16); time and disk grow",
     )
     parser.add_argument(
+        "--posed",
+        type=whole,
+        metavar="N",
+        help="rendered hands in the poses of real ones, if `world_NAME.npz` beside the manifest NAME.csv tells their "
+        "joints (default: 20000)",
+    )
+    parser.add_argument(
         "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default: 0)"
     )
     parser.add_argument("--quiet", action="store_true", help="no progress and no summary on stderr")
@@ -112,6 +119,8 @@ def net_training(args: argparse.Namespace) -> "CnnTraining":
     pool = training.pool
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)
+    if args.posed is not None:
+        pool = replace(pool, posed=args.posed)
     if args.synthetic is not None:
         pool = replace(pool, rendered=args.synthetic)
     return replace(training, pool=pool)

@@ -61,6 +61,8 @@ def run(args: argparse.Namespace) -> int:
     pool, svm = replace(training.pool, rendered=args.synthetic), SvmSettings()
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)
+    if args.posed is not None:
+        pool = replace(pool, posed=args.posed)
     if args.centres is not None:
         svm = replace(svm, centres=args.centres)
     if args.steps is not None:

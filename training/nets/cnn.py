@@ -17,10 +17,10 @@ from lightgesture.training.card import held_out_section, make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
+from lightgesture.training.pool.kept_hands import kept_out
 from lightgesture.training.pool.kept_sources import (
     LEAST_FITTED,
     held_out_hands,
-    kept_out,
 )
 from lightgesture.training.pool.originals import Originals, PoolSettings, read_originals
 from lightgesture.training.pool.patch_kinds import CONTOUR, MARGIN, PATCH, SMALLEST_HAND

@@ -1,7 +1,7 @@
 """What real divers add to a pool: their hands, and copies of dry ones that look as theirs do."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -9,8 +9,9 @@ import numpy as np
 from lightgesture.features.types import Float, Image
 from lightgesture.training.pictures.augment import CANVAS, REACH, AugmentSettings
 from lightgesture.training.pictures.light import LightSettings, relight
-from lightgesture.training.pictures.sea import submerge
+from lightgesture.training.pictures.sea import SeaLook, submerge
 from lightgesture.training.pool.altered import altered
+from lightgesture.training.pool.divers import Divers
 from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.samples import TrainingSample
 
@@ -47,19 +48,40 @@ LEAST_SPREAD: Final = 7.0
 """Deviation of green in a look, grey levels, below which a hand hardly shows."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class DiveLooks:
+    """Looks of hands on real dives. faint: of hands at rest. clear: of signs."""
+
+    faint: Sequence[SeaLook]
+    clear: Sequence[SeaLook]
+
+    @staticmethod
+    def of(divers: Divers) -> "DiveLooks":
+        """Those that show a hand at all."""
+        faint, clear = (
+            [look for look in looks if look.deviation[1] >= LEAST_SPREAD]
+            for looks in (divers.looks, divers.sign_looks)
+        )
+        return DiveLooks(faint, clear)
+
+    def give(self, image: Image, mask: Float | None, side: float, random: Random) -> Image:
+        """A dry hand in one of the looks, which must be there; see `sea.submerge`."""
+        lit = relight(image, mask, BEFORE_SUBMERGING, random)
+        of_sign = self.clear and (not self.faint or random.random() < SIGN_LOOK)
+        return submerge(lit, mask, side, self.clear if of_sign else self.faint, random)
+
+    def __len__(self) -> int:
+        return len(self.faint) + len(self.clear)
+
+
 def sea(
     originals: Originals, settings: PoolSettings, first: int, last: int, random: Random
 ) -> Iterator[TrainingSample]:
     """A copy of each hand as a real dive would show it."""
-    faint, clear = (
-        [look for look in looks if look.deviation[1] >= LEAST_SPREAD]
-        for looks in (originals.divers.looks, originals.divers.sign_looks)
-    )
+    looks = DiveLooks.of(originals.divers)
 
     def finish(image: Image, mask: Float | None, random: Random) -> Image:
-        lit = relight(image, mask, BEFORE_SUBMERGING, random)
-        of_sign = clear and (not faint or random.random() < SIGN_LOOK)
-        return submerge(lit, mask, CANVAS / REACH, clear if of_sign else faint, random)
+        return looks.give(image, mask, CANVAS / REACH, random)
 
     how = replace(settings.augment, rotation=TURN, background=BACKGROUND, lying=LYING)
     yield from altered(originals, originals.hands[first:last], how, random, finish)

@@ -8,6 +8,7 @@ from lightgesture.models import CLASSES, NONE
 from lightgesture.training.pictures.augment import AugmentSettings
 from lightgesture.training.pictures.light import LightSettings
 from lightgesture.training.pool.divers import Divers, read_divers
+from lightgesture.training.pool.joints import Poses, fit_poses
 from lightgesture.training.pool.negatives import Scene, read_backgrounds, read_scenes
 from lightgesture.training.pool.samples import HandRow, LabelledHand, load_hand
 
@@ -30,6 +31,8 @@ class PoolSettings:
     """How often regions that are no hand are drawn from each picture, 1 to 100."""
     rendered: int = 12000
     """Rendered hands beside the real ones, of the signs that both know."""
+    posed: int = 20000
+    """Rendered hands in the poses of real ones whose joints are known, seen from up to 75 degrees; 0 for none."""
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(
             rotation=18.0,
@@ -56,12 +59,13 @@ class PoolSettings:
 @dataclass(frozen=True, slots=True, eq=False)
 class Originals:
     """What copies are made of. hands: labelled. backgrounds: pictures without hands. scenes: whole pictures.
-    divers: real ones."""
+    divers: real ones. poses: of those hands whose joints are known."""
 
     hands: Sequence[LabelledHand]
     backgrounds: Sequence[Scene] = ()
     scenes: Sequence[Scene] = ()
     divers: Divers = field(default_factory=Divers)
+    poses: Poses = field(default_factory=Poses)
 
     @property
     def rendered_classes(self) -> frozenset[str]:
@@ -91,4 +95,5 @@ def read_originals(
         [scene for folder in backgrounds for scene in read_backgrounds(folder)],
         read_scenes(scenes) if scenes else (),
         read_divers(divers, {row.token for row in rows}, without) if divers else Divers(),
+        fit_poses([row.joints for row in rows], [row.token for row in rows]),
     )

@@ -16,6 +16,7 @@ from lightgesture.training.pool.altered import altered, behind, relit
 from lightgesture.training.pool.diver_kinds import resting, sea, shown
 from lightgesture.training.pool.negatives import missed_hand, negatives
 from lightgesture.training.pool.originals import Originals, PoolSettings
+from lightgesture.training.pool.posed import posed
 from lightgesture.training.samples import TrainingSample
 
 Random = np.random.Generator
@@ -132,6 +133,7 @@ KINDS: Mapping[str, Draw] = {
     "sea": sea,
     "shown": shown,
     "resting": resting,
+    "posed": posed,
 }
 """What draws the samples of a kind from the originals `first` to `last`; the place in this table seeds it."""
 COPIED = ("hands", "mild", "sea")

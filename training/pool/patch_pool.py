@@ -153,7 +153,8 @@ def _tasks(originals: Originals, settings: PoolSettings) -> list[_Task]:
     tasks += parts("mild", len(originals.hands), settings.mild_copies)
     tasks += parts("sea", len(originals.hands) if divers.looks else 0, settings.sea_copies)
     tasks += parts("shown", len(divers.shown), settings.shown_copies)
-    return tasks + parts("rendered", settings.rendered if originals.rendered_classes else 0, 1)
+    tasks += parts("rendered", settings.rendered if originals.rendered_classes else 0, 1)
+    return tasks + parts("posed", settings.posed if len(originals.poses) else 0, 1)
 
 
 def _results(

@@ -14,7 +14,7 @@ either the whole picture is the hand. Optional: `set` (the person, room and came
 import re
 from collections import Counter
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -28,6 +28,7 @@ from lightgesture.features.types import Box, Image
 from lightgesture.fsm.language.schema import TOKEN
 from lightgesture.sources import is_picture_name, read_picture
 from lightgesture.training.datasets import LANDMARK_MARGIN, grow_box
+from lightgesture.training.pool.joints import Joints, read_joints
 from lightgesture.training.tables import picture_path, table_rows
 
 KEPT_REACH = 2.2
@@ -36,13 +37,17 @@ KEPT_REACH = 2.2
 COPYLEFT = re.compile(r"(?<!L)GPL", re.IGNORECASE)
 """In what a manifest says of a licence: the GPL and the AGPL, not the LGPL."""
 
+DOUBTFUL = "doubtful"
+"""In the note of a hand that is not sure to show its token: nobody else is posed like it."""
+
 KEPT_PIXELS = 160
 """Longest side of what is kept, in pixels: larger ones only fill the memory, a patch being far smaller."""
 
 
 @dataclass(frozen=True, slots=True)
 class HandRow:
-    """One row of truth. box: outline, pixels, None for the whole picture. landmarks: (21, 2) or None."""
+    """One row of truth. box: outline, pixels, None for the whole picture. landmarks: (21, 2) or None. joints: in
+    space, where known and trusted."""
 
     path: Path
     token: str
@@ -51,6 +56,7 @@ class HandRow:
     box: Box | None = None
     landmarks: NDArray[np.float32] | None = field(default=None, compare=False)
     licence: str = "none stated"
+    joints: Joints | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,7 +110,11 @@ def rows_digest(rows: Sequence[HandRow]) -> str:
     known = [
         (str(row.path), row.path.stat().st_size, row.token, row.source, row.side, row.box) for row in rows
     ]
-    return sha256(repr(known).encode()).hexdigest()
+    digest = sha256(repr(known).encode())
+    for row in rows:
+        if row.joints is not None:
+            digest.update(row.joints.world.tobytes())
+    return digest.hexdigest()
 
 
 def load_hand(row: HandRow) -> LabelledHand:
@@ -162,8 +172,16 @@ def _folder_rows(folder: Path) -> list[HandRow]:
 
 
 def _manifest_rows(manifest: Path) -> list[HandRow]:
-    rows = table_rows(manifest, ("path", "token"), "give a manifest or a folder")
-    return [_manifest_row(manifest, line, row) for line, row in rows]
+    table = list(table_rows(manifest, ("path", "token"), "give a manifest or a folder"))
+    joints = read_joints(manifest, len(table))
+    rows = []
+    for (line, cells), known in zip(table, joints, strict=True):
+        row = _manifest_row(manifest, line, cells)
+        if known is not None and DOUBTFUL not in cells.get("note", ""):
+            # Tokens are those of right hands that were mirrored.
+            row = replace(row, joints=known.mirrored() if row.side == "right" else known)
+        rows.append(row)
+    return rows
 
 
 def _manifest_row(manifest: Path, line: int, row: dict[str, str]) -> HandRow:

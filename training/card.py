@@ -129,6 +129,9 @@ def data_section(
         "left_out": list(without),
         "rendered_hands": int(np.char.startswith(pool.sources, f"{RENDERED_SOURCE} ").sum()),
         "patches": len(pool.tokens),
+        "patches_with_landmarks": 0
+        if pool.landmarks is None
+        else int(np.isfinite(pool.landmarks).any(axis=1).sum()),
     }
 
 

@@ -132,6 +132,9 @@ def data_section(
         "rendered_hands": int(np.char.startswith(pool.sources, f"{RENDERED_SOURCE} ").sum()),
         "posed_hands": int(np.char.startswith(pool.sources, f"{POSED_SOURCE} ").sum()),
         "patches": len(pool.tokens),
+        "patches_with_landmarks": 0
+        if pool.landmarks is None
+        else int(np.isfinite(pool.landmarks).any(axis=1).sum()),
     }
 
 

@@ -3,12 +3,14 @@
 import argparse
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
 from lightgesture.errors import UsageError
 from lightgesture.features.patch import PatchSettings, cut_patch
 from lightgesture.synth import crops
+from lightgesture.training.card import data_section
 from lightgesture.training.commands import classifier
 from lightgesture.training.nets import hand_samples
 from lightgesture.training.nets.cnn import CnnTraining, draw
@@ -143,6 +145,8 @@ def test_a_pool_keeps_landmarks_where_they_are_known(pool, tmp_path):
     assert pool.landmarks.shape == (len(pool.tokens), COORDINATES)
     assert pool.landmarks.dtype == np.float16
     known = np.isfinite(pool.landmarks).all(axis=1)
+    for one, count in ((pool, int(known.sum())), (replace(pool, landmarks=None), 0)):
+        assert data_section([], Originals([]), one, [])["patches_with_landmarks"] == count
     assert (known == np.isin(pool.hands, (0, 1))).all()
     assert np.isnan(pool.landmarks[~known]).all()
     path = tmp_path / "pool" / "landmarks.npy"
@@ -271,8 +275,6 @@ def test_a_net_learns_classes_and_landmarks(tmp_path, monkeypatch, answers):
 
 def test_patches_of_before_are_used_and_it_is_told(tmp_path, monkeypatch, caplog, pool):
     hands = tmp_path / "hands"
-    import cv2
-
     for token in ("5", "none"):
         (hands / token).mkdir(parents=True)
         cv2.imwrite(str(hands / token / "1.png"), dotted(4).image)

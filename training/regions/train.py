@@ -15,14 +15,14 @@ from lightgesture.features.find.learned import Places
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, load_learned
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
-from lightgesture.training.model_files import write_classical, write_selector
+from lightgesture.training.model_files import write_classical, write_json, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
 from lightgesture.training.regions.card import has_seen_dives, write_card
-from lightgesture.training.regions.dive_folds import DiveFold, dive_folds, shortened
+from lightgesture.training.regions.dive_folds import DiveFold, dive_folds
 from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import (
     COMPOSED,
@@ -81,24 +81,35 @@ def train_regions(
     progress("composing pictures")
     composed = _compose(for_nets, COMPOSED, seed + 1, jobs, folder / "composed.npy")
     unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
-    folds: list[DiveFold] = []
+    people, weighers, folds = for_nets, for_trees, []
     if settings.dive_folds:
-        # A fold of each dive is kept from nets of its own, so these may learn from all.
-        for_nets, for_trees = replace(for_nets, divers=material.divers), replace(for_trees, divers=[])
-        folds = list(dive_folds(for_nets, composed, folder, seed, settings, progress))
-    nets = learn_nets(for_nets, composed, folder, seed, settings, progress)
+        # A fold of each dive is kept from nets of its own, so the nets of the file may learn from all.
+        people, weighers = replace(for_nets, divers=material.divers), replace(for_trees, divers=[])
+        folds = list(dive_folds(people, composed, folder, seed, settings, progress))
+    nets = learn_nets(people, composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
-    first, second = _tree_pictures(for_trees, unseen, seed)
-    learned = weighed(nets, (first, second), folds, seed)
+    pictures = _tree_pictures(weighers, unseen, seed)
+    learned = weighed(nets, pictures, folds, seed)
     progress("fitting the classical trees")
-    classical = _classical(data, for_nets, composed, second, without, seed)
+    for_pairs = _tree_pictures(for_trees, unseen, seed)[1]
+    classical = _classical(data, for_nets, composed, for_pairs, without, seed)
     write_selector(classical, learned, out)
-    for own in folds:
-        others = [fold for fold in folds if fold is not own]
-        apart = own.folder / "selector.npz"
-        write_selector(classical, weighed(own.nets, (first, second), others, seed), apart)
-        write_card(apart, seed, own.left_out, shortened(settings), material, time.monotonic() - started)
+    _write_folds(folds, classical, pictures, seed)
     write_card(out, seed, without, settings, material, time.monotonic() - started)
+
+
+def _write_folds(
+    folds: Sequence[DiveFold],
+    classical: ClassicalParts,
+    pictures: tuple[Sequence[BoxedPicture], Sequence[BoxedPicture]],
+    seed: int,
+) -> None:
+    """A selector in the folder of each fold, of which neither nets nor trees learnt from the dives of the fold."""
+    for fold in folds:
+        others = [other for other in folds if other is not fold]
+        file = fold.folder / "selector.npz"
+        write_selector(classical, weighed(fold.nets, pictures, others, seed), file)
+        write_json({CARD_KEY: fold.left_out.to_card()}, file.with_suffix(".json"))
 
 
 def train_classical(

@@ -15,6 +15,7 @@ from lightgesture.features.find.bank import Bank
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts
 from lightgesture.features.find.trees import Trees
 from lightgesture.features.net.flatbuffer import network_arrays
+from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.models import cnn_file, svm_file
 from lightgesture.models.cnn import CnnModel
 from lightgesture.models.svm_file import SvmModel
@@ -80,6 +81,16 @@ def _classical_arrays(classical: ClassicalParts) -> dict[str, NDArray[Any]]:
         **_tree_arrays("extent_pairs", classical.pairs),
         **bank_arrays("bank", classical.bank),
     }
+
+
+def write_networks(networks: Mapping[str, IntegerNetwork], path: Path) -> None:
+    """Write nets by the beginnings of the names of their arrays, for a training that goes on. Raises UsageError."""
+    arrays = {
+        name: array
+        for part, network in networks.items()
+        for name, array in network_arrays(part, network).items()
+    }
+    _write(path, {}, arrays)
 
 
 def write_json(content: Mapping[str, Any], path: Path) -> None:

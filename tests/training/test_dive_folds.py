@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 
+from lightgesture.features.find.selector_file import load_learned
+from lightgesture.training.model_files import write_networks
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.real_divers import RealDiver
 from lightgesture.training.regions import dive_folds as module
 from lightgesture.training.regions.card import DIVERS_KEY, has_seen_dives
 from lightgesture.training.regions.dive_folds import dive_folds, shortened
-from lightgesture.training.regions.nets import RegionTraining
+from lightgesture.training.regions.nets import LOCATOR, NETS, REFINER, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import Material
 
 DIVES = [f"divers dive {number}" for number in range(12)]
@@ -47,6 +49,17 @@ def test_no_net_has_learnt_from_the_dives_of_its_fold(folds):
 
 def test_every_picture_is_in_one_fold(folds):
     assert sum(len(apart) for _, apart in folds) == 2 * len(DIVES)
+
+
+def test_nets_that_lie_in_their_folder_are_not_trained_again(tmp_path):
+    parts = load_learned()
+    write_networks({LOCATOR: parts.locator, REFINER: parts.refiner}, tmp_path / NETS)
+    locator, refiner = learn_nets(Material([], [], [], []), [], tmp_path, 0, RegionTraining(), lambda _: None)
+    assert (locator.nodes, refiner.nodes) == (parts.locator.nodes, parts.refiner.nodes)
+    assert all(
+        np.array_equal(own.weights, parts.locator.weights[name].weights)
+        for name, own in locator.weights.items()
+    )
 
 
 def test_the_nets_of_a_fold_learn_a_third_as_long():

@@ -4,10 +4,13 @@ import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
+from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import SelectorError, load_learned
+from lightgesture.features.net.file import network_from
 from lightgesture.features.net.network import IntegerNetwork
+from lightgesture.training.model_files import write_networks
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.real_divers import RealDivers
 from lightgesture.training.regions.region_pictures import Material
@@ -16,6 +19,11 @@ if TYPE_CHECKING:
     from lightgesture.training.nets.net_training import Precision
 
 Progress = Callable[[str], None]
+
+NETS: Final = "nets.npz"
+"""Both nets in the folder of a training."""
+LOCATOR, REFINER = "locator", "refiner"
+"""Beginnings of the names of their arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +61,24 @@ def learn_nets(
     settings: RegionTraining,
     progress: Progress,
 ) -> tuple[IntegerNetwork, IntegerNetwork]:
-    """Locator and refiner, learnt from the material and from composed pictures. What is done lies in `folder`."""
+    """Locator and refiner, learnt from the material and from composed pictures. What is done lies in `folder`: where
+    both are, they are not trained again."""
+    done = folder / NETS
+    if not done.is_file():
+        locator, refiner = _learn(material, composed, folder, seed, settings, progress)
+        write_networks({LOCATOR: locator, REFINER: refiner}, done)
+    _, arrays = read_archive(done)
+    return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
+
+
+def _learn(
+    material: Material,
+    composed: list[BoxedPicture],
+    folder: Path,
+    seed: int,
+    settings: RegionTraining,
+    progress: Progress,
+) -> tuple[IntegerNetwork, IntegerNetwork]:
     from lightgesture.training.nets.locator import train_locator
     from lightgesture.training.nets.locator_samples import LocatorSamples
     from lightgesture.training.nets.refiner import train_refiner

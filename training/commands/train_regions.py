@@ -38,13 +38,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "suffices",
     )
     parser.add_argument(
-        "--dive-folds",
-        type=int,
-        metavar="N",
-        help="trainings, a third as long, each without one in so many of the real dives: the trees learn from what "
-        "nets say of dives that they did not see (default: 5; 0: one dive in eight is kept from the nets)",
-    )
-    parser.add_argument(
         "--classical",
         action="store_true",
         help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
@@ -83,8 +76,6 @@ def run(args: argparse.Namespace) -> int:
     except ValueError as error:
         raise UsageError(f"--fold: {error}") from error
     start = _start(args.start)
-    if args.dive_folds is not None and (args.dive_folds < 0 or args.dive_folds == 1):
-        raise UsageError(f"--dive-folds is {args.dive_folds}; it must be 0, or 2 or more")
     if args.classical and start is None:
         raise UsageError(
             "--classical keeps the nets of another file; name it by --start, such as --start bundled"
@@ -92,8 +83,6 @@ def run(args: argparse.Namespace) -> int:
     settings = RegionTraining(precision=args.precision, start=start)
     if args.steps is not None:
         settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
-    if args.dive_folds is not None:
-        settings = replace(settings, dive_folds=args.dive_folds)
     try:
         with NeverSilent((lambda _: None) if args.quiet else say) as progress:
             if args.classical and start is not None:

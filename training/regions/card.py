@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from typing import Final
 
 import cv2
 import numpy as np
@@ -12,20 +11,6 @@ from lightgesture.training.nets.checkpoints import peak_memory_mib
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.regions.nets import RegionTraining
 from lightgesture.training.regions.region_pictures import COMPOSED, NEGATIVE_SETS, ONE_IN, UNSEEN, Material
-
-DIVERS_KEY: Final = "real divers (divers)"
-"""In a card, of their pictures."""
-
-
-def has_seen_dives(start: Path | None) -> bool:
-    """Whether the card beside a selector's file tells of real divers; False without a card that does."""
-    if start is None or not start.with_suffix(".json").is_file():
-        return False
-    try:
-        card = json.loads(start.with_suffix(".json").read_text(encoding="utf-8"))
-        return bool(card["data"][DIVERS_KEY])
-    except (ValueError, KeyError, TypeError):
-        return False
 
 
 def write_card(
@@ -46,11 +31,10 @@ def write_card(
             "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
             "hands cut out of hands/train": len(material.hands),
             "underwater frames without a hand": len(material.empty),
-            DIVERS_KEY: len(material.divers),
+            "real divers (divers)": len(material.divers),
             "composed pictures": COMPOSED + UNSEEN,
             "sets of negatives used": list(NEGATIVE_SETS),
             "kept from the nets, for the trees": f"one in {ONE_IN} sources",
-            "folds of the dives, for the trees": settings.dive_folds,
         },
         CARD_KEY: without.to_card(),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "

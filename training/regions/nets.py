@@ -36,9 +36,6 @@ class RegionTraining:
     """Likewise."""
     precision: "Precision" = "float32"
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
-    dive_folds: int = 5
-    """Folds of the real dives, 0 or 2 and more: the trees learn from what nets of so many more trainings, a third as
-    long each, say of dives that they did not see. 0 keeps one dive in eight from the nets for the trees."""
     start: Path | None = None
     """Selector whose nets go on learning; None to begin with random weights."""
 

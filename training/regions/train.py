@@ -3,7 +3,6 @@
 import json
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -13,16 +12,14 @@ from lightgesture.errors import InputError
 from lightgesture.features.compiled import best_loops
 from lightgesture.features.find.learned import Places
 from lightgesture.features.find.selector_file import ClassicalParts, LearnedParts, load_learned
-from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.results.atomic import replacing
-from lightgesture.training.model_files import write_classical, write_json, write_selector
+from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
 from lightgesture.training.regions.bank import make_bank
-from lightgesture.training.regions.card import has_seen_dives, write_card
-from lightgesture.training.regions.dive_folds import DiveFold, dive_folds
+from lightgesture.training.regions.card import write_card
 from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import (
     COMPOSED,
@@ -33,7 +30,6 @@ from lightgesture.training.regions.region_pictures import (
     variants,
 )
 from lightgesture.training.regions.trees import (
-    Seen,
     fit_pairs,
     fit_place_pairs,
     fit_places,
@@ -61,16 +57,10 @@ def train_regions(
     """Train the selector and write it with its card (`out` with the suffix .json).
 
     What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
-    when the file is written. In the end a selector that learnt nothing from the dives of a fold lies there for each
-    fold, for an evaluation. Raises InputError, UsageError.
+    when the file is written. Raises InputError, UsageError.
     """
     need_torch()
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
-    if settings.dive_folds and has_seen_dives(settings.start):
-        raise InputError(
-            f"{settings.start}: its nets learnt from real divers, so no fold of these can be kept from them; "
-            "start from one without, from nothing, or with --dive-folds 0"
-        )
     told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
     folder = checkpoint_folder(out, {"seed": seed, **told})
     progress("reading whole frames and cutting out hands")
@@ -81,35 +71,15 @@ def train_regions(
     progress("composing pictures")
     composed = _compose(for_nets, COMPOSED, seed + 1, jobs, folder / "composed.npy")
     unseen = _compose(for_trees, UNSEEN, seed + 2, jobs, folder / "unseen.npy")
-    people, weighers, folds = for_nets, for_trees, []
-    if settings.dive_folds:
-        # A fold of each dive is kept from nets of its own, so the nets of the file may learn from all.
-        people, weighers = replace(for_nets, divers=material.divers), replace(for_trees, divers=[])
-        folds = list(dive_folds(people, composed, folder, seed, settings, progress))
-    nets = learn_nets(people, composed, folder, seed, settings, progress)
+    nets = learn_nets(for_nets, composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
-    pictures = _tree_pictures(weighers, unseen, seed)
-    learned = weighed(nets, pictures, folds, seed)
+    first, second = _tree_pictures(for_trees, unseen, seed)
+    places = fit_places(look(first, Places(*nets)), seed)
+    pairs = fit_place_pairs(look(second, Places(*nets)), places, seed)
     progress("fitting the classical trees")
-    for_pairs = _tree_pictures(for_trees, unseen, seed)[1]
-    classical = _classical(data, for_nets, composed, for_pairs, without, seed)
-    write_selector(classical, learned, out)
-    _write_folds(folds, classical, pictures, seed)
+    classical = _classical(data, for_nets, composed, second, without, seed)
+    write_selector(classical, LearnedParts(*nets, places, pairs), out)
     write_card(out, seed, without, settings, material, time.monotonic() - started)
-
-
-def _write_folds(
-    folds: Sequence[DiveFold],
-    classical: ClassicalParts,
-    pictures: tuple[Sequence[BoxedPicture], Sequence[BoxedPicture]],
-    seed: int,
-) -> None:
-    """A selector in the folder of each fold, of which neither nets nor trees learnt from the dives of the fold."""
-    for fold in folds:
-        others = [other for other in folds if other is not fold]
-        file = fold.folder / "selector.npz"
-        write_selector(classical, weighed(fold.nets, pictures, others, seed), file)
-        write_json({CARD_KEY: fold.left_out.to_card()}, file.with_suffix(".json"))
 
 
 def train_classical(
@@ -153,27 +123,6 @@ def train_classical(
 def _compose(material: Material, count: int, seed: int, jobs: int, path: Path) -> list[BoxedPicture]:
     ingredients = Ingredients(material.hands, material.waters(), material.rooms())
     return compose_pool(ingredients, count, seed, jobs, path)
-
-
-def weighed(
-    nets: tuple[IntegerNetwork, IntegerNetwork],
-    pictures: tuple[Sequence[BoxedPicture], Sequence[BoxedPicture]],
-    folds: Sequence[DiveFold],
-    seed: int,
-) -> LearnedParts:
-    """The nets with the trees that weigh them.
-
-    pictures: which the nets have not seen, for the trees of places and for those of pairs. folds: of the dives.
-    """
-    rng = np.random.default_rng(seed)
-    seen: tuple[list[Seen], list[Seen]] = [], []
-    for part, own in zip(seen, pictures, strict=True):
-        part.extend(look(own, Places(*nets)))
-    for fold in folds:
-        for one in fold.seen():
-            seen[rng.random() < PAIR_SHARE].append(one)
-    places = fit_places(seen[0], seed)
-    return LearnedParts(*nets, places, fit_place_pairs(seen[1], places, seed))
 
 
 def _tree_pictures(

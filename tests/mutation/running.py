@@ -1,0 +1,196 @@
+"""Tests are collected once; each mutant is then a forked process that runs the tests which call its function.
+
+One run of the unaltered code notes which functions each test calls and how long it takes. The quickest tests come
+first, and the first that fails ends a mutant. Only the processes are altered, so that nothing is left of a mutant.
+"""
+
+import json
+import os
+import pickle
+import resource
+import signal
+import sys
+import threading
+import time
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass, field
+from itertools import accumulate
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any
+
+import pytest
+
+from .mutants import Mutant, put_in
+
+SPARE_S = 10.0
+"""Seconds beyond what its tests may take after which a mutant counts as one that hangs."""
+SLOWER = 8.0
+"""How many times longer than in the first run tests may take: others use the machine."""
+MEMORY = 4 << 30
+"""Bytes of address space that a mutant may take beyond what there is."""
+
+
+@dataclass(slots=True)
+class Called:
+    """What a test does: its seconds, and the functions that it calls, as (module, qualified name)."""
+
+    seconds: float = 0.0
+    functions: set[tuple[str, str]] = field(default_factory=set)
+
+
+class Trial:
+    """A plugin of pytest that tries mutants in place of running the tests.
+
+    within_s: seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant,
+    what became of it: "killed" or "survived", the test that killed it, and seconds.
+    """
+
+    def __init__(
+        self,
+        mutants: list[Mutant],
+        sources: dict[str, str],
+        within_s: float,
+        note: Callable[[Mutant, str, str, float], None],
+    ) -> None:
+        self._mutants, self._sources, self._within_s, self._note = mutants, sources, within_s, note
+        self._wanted = {(mutant.module, mutant.function) for mutant in mutants}
+        self._by_fixture: defaultdict[str, set[tuple[str, str]]] = defaultdict(set)
+        self._sinks: list[set[tuple[str, str]]] = []
+        self._failed = ""
+        self._kills: Counter[tuple[str, str, str]] = Counter()
+
+    # What pytest asks
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        """Try all mutants."""
+        items = {item.nodeid: item for item in session.items}
+        called, failed = _forked(lambda: self._observe(session), None)
+        if failed:
+            raise pytest.UsageError(f"{failed}: fails without any mutant")
+        for mutant in self._mutants:
+            start_s = time.monotonic()
+            tests = self._tests(mutant, called)
+            limit_s = SPARE_S + SLOWER * sum(called[test].seconds for test in tests)
+
+            def attempt(mutant: Mutant = mutant, tests: list[str] = tests) -> str:
+                put_in(mutant, self._sources[mutant.module])
+                return self._first_failure(session, [items[test] for test in tests])
+
+            try:
+                killer = _forked(attempt, limit_s) if tests else ""
+            except ProcessLookupError as error:
+                killer = str(error)
+            self._kills[mutant.module, mutant.function, killer] += 1
+            self._note(mutant, "killed" if killer else "survived", killer, time.monotonic() - start_s)
+        return True
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """The first test that fails."""
+        if report.failed and not self._failed:
+            self._failed = report.nodeid
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_fixture_setup(self, fixturedef: pytest.FixtureDef[Any]) -> Iterator[None]:
+        """What is called for a fixture counts for every test that uses it."""
+        self._sinks.append(set())
+        try:
+            return (yield)
+        finally:
+            self._by_fixture[fixturedef.argname] |= self._sinks.pop()
+
+    # The parts
+
+    def _observe(self, session: pytest.Session) -> tuple[dict[str, Called], str]:
+        """Run all tests once: what each calls, and the first that fails."""
+        found = {item.nodeid: Called() for item in session.items}
+        names: dict[CodeType, tuple[str, str] | None] = {}
+
+        def profile(frame: FrameType, event: str, _: object) -> None:
+            if event != "call":
+                return
+            code = frame.f_code
+            if code not in names:
+                # Functions within functions, and comprehensions, are parts of the outer one.
+                outer = code.co_qualname.split(".<locals>")[0]
+                name = str(frame.f_globals.get("__name__")), outer
+                names[code] = name if name in self._wanted else None
+            if (name_of := names[code]) is not None:
+                self._sinks[-1].add(name_of)
+
+        for item, after in zip(session.items, [*session.items[1:], None], strict=True):
+            of_item = found[item.nodeid]
+            self._sinks = [of_item.functions]
+            start_s = time.monotonic()
+            threading.setprofile(profile)
+            sys.setprofile(profile)
+            session.config.hook.pytest_runtest_protocol(item=item, nextitem=after)
+            sys.setprofile(None)
+            of_item.seconds = time.monotonic() - start_s
+        for item in session.items:
+            for fixture in getattr(item, "fixturenames", ()):
+                found[item.nodeid].functions |= self._by_fixture.get(fixture, set())
+        return found, self._failed
+
+    def _tests(self, mutant: Mutant, called: dict[str, Called]) -> list[str]:
+        """The tests that call a function: first those that have killed others of it, then the quickest."""
+        name = mutant.module, mutant.function
+        tests = [test for test, what in called.items() if name in what.functions]
+        tests.sort(key=lambda test: called[test].seconds)
+        sums = accumulate(called[test].seconds for test in tests)
+        tests = tests[: max(1, sum(seconds <= self._within_s for seconds in sums))]
+        return sorted(tests, key=lambda test: (-self._kills[*name, test], called[test].seconds))
+
+    def _first_failure(self, session: pytest.Session, items: list[pytest.Item]) -> str:
+        self._sinks, self._failed = [set()], ""
+        for item, after in zip(items, [*items[1:], None], strict=True):
+            session.config.hook.pytest_runtest_protocol(item=item, nextitem=after)
+            if self._failed:
+                break
+        return self._failed
+
+
+def _forked(work: Callable[[], Any], limit_s: float | None) -> Any:
+    """What a function gives that is run in a process forked from this one.
+
+    Raises ProcessLookupError where that ends without giving anything: after `limit_s`, for want of memory, by a crash.
+    """
+    reading, writing = os.pipe()
+    process = os.fork()
+    if not process:
+        os.close(reading)
+        silence = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(silence, 1)
+        os.dup2(silence, 2)
+        if limit_s is not None:
+            signal.setitimer(signal.ITIMER_REAL, limit_s)
+            used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+            resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, used + MEMORY))
+        try:
+            with os.fdopen(writing, "wb") as pipe:
+                pickle.dump(work(), pipe)
+        finally:
+            os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, "rb") as pipe:
+        content = pipe.read()
+    _, status = os.waitpid(process, 0)
+    if not content:
+        raise ProcessLookupError(f"ended with {status}")
+    return pickle.loads(content)
+
+
+def noted(file: Path) -> dict[str, dict[str, Any]]:
+    """What a file of results says, by the key of the mutant; the last word counts."""
+    if not file.exists():
+        return {}
+    lines = (json.loads(line) for line in file.read_text(encoding="utf-8").splitlines())
+    return {line["key"]: line for line in lines}
+
+
+def note_in(file: Path, mutant: Mutant, outcome: str, killer: str, seconds: float) -> None:
+    """Add a line to a file of results."""
+    line = {**asdict(mutant), "outcome": outcome, "by": killer, "seconds": round(seconds, 2)}
+    with open(file, "a", encoding="utf-8") as lines:
+        lines.write(json.dumps(line) + "\n")

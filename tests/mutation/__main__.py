@@ -88,15 +88,19 @@ def _try(name: str, mutants: list[Mutant], file: Path, is_of_survivors: bool, wi
         if outcome == "survived":
             print(_line(mutant), flush=True)
 
+    functions = {
+        (mutant.module, mutant.function)
+        for module in GROUPS[name].modules
+        for mutant in mutants_of(module, source_of(module))
+    }
     sources = {mutant.module: source_of(mutant.module) for mutant in waiting}
+    trial = Trial(waiting, sources, functions, file.with_suffix(".calls"), within_s, note)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = folder
         options = ["-q", "-s", "-p", "no:cacheprovider"]
         if GROUPS[name].unfit:
             options += ["-k", f"not ({GROUPS[name].unfit})"]
-        status = pytest.main(
-            [*options, *GROUPS[name].tests], plugins=[Trial(waiting, sources, within_s, note)]
-        )
+        status = pytest.main([*options, *GROUPS[name].tests], plugins=[trial])
     if status:
         sys.exit(f"{name}: the tests do not pass, or cannot be collected ({status!r})")
 

@@ -131,7 +131,9 @@ def _functions(parent: ast.AST, prefix: str) -> Iterator[tuple[str, ast.Function
 
 
 def _walk(node: ast.AST) -> Iterator[ast.AST]:
-    """A node and all below it but annotations and formats, in the order of the text."""
+    """A node and all below it but annotations, formats and whether `zip` is strict, in the order of the text."""
+    if isinstance(node, ast.keyword) and node.arg == "strict":
+        return
     yield node
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns", "format_spec"):

@@ -1,9 +1,11 @@
 """Tests are collected once; each mutant is then a forked process that runs the tests which call its function.
 
-One run of the unaltered code notes which functions each test calls and how long it takes. The quickest tests come
-first, and the first that fails ends a mutant. Only the processes are altered, so that nothing is left of a mutant.
+One run of the unaltered code notes which functions each test calls and how long it takes; it is kept as long as the
+test's file stays the same. The quickest tests come first, and the first that fails ends a mutant. Only the processes are
+altered, so that nothing is left of a mutant. Seconds are of the processor, for others may use it.
 """
 
+import hashlib
 import json
 import os
 import pickle
@@ -24,38 +26,44 @@ import pytest
 
 from .mutants import Mutant, put_in
 
-SPARE_S = 10.0
+SPARE_S = 5.0
 """Seconds beyond what its tests may take after which a mutant counts as one that hangs."""
-SLOWER = 8.0
-"""How many times longer than in the first run tests may take: others use the machine."""
+SLOWER = 3.0
+"""How many times longer than in the first run its tests may take."""
+WAITING = 20.0
+"""How many times as many seconds of the clock: others use the machine."""
 MEMORY = 4 << 30
 """Bytes of address space that a mutant may take beyond what there is."""
 
 
 @dataclass(slots=True)
 class Called:
-    """What a test does: its seconds, and the functions that it calls, as (module, qualified name)."""
+    """What a test does: its seconds, the functions that it calls, and the digest of its file."""
 
     seconds: float = 0.0
     functions: set[tuple[str, str]] = field(default_factory=set)
+    digest: str = ""
 
 
 class Trial:
     """A plugin of pytest that tries mutants in place of running the tests.
 
-    within_s: seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant,
-    what became of it: "killed" or "survived", the test that killed it, and seconds.
+    functions: of the whole group, as (module, qualified name). known: the file with what was seen of the tests. within_s:
+    seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant, what
+    became of it: "killed" or "survived", the test that killed it, and seconds.
     """
 
     def __init__(
         self,
         mutants: list[Mutant],
         sources: dict[str, str],
+        functions: set[tuple[str, str]],
+        known: Path,
         within_s: float,
         note: Callable[[Mutant, str, str, float], None],
     ) -> None:
         self._mutants, self._sources, self._within_s, self._note = mutants, sources, within_s, note
-        self._wanted = {(mutant.module, mutant.function) for mutant in mutants}
+        self._wanted, self._known = functions, known
         self._by_fixture: defaultdict[str, set[tuple[str, str]]] = defaultdict(set)
         self._sinks: list[set[tuple[str, str]]] = []
         self._failed = ""
@@ -66,9 +74,7 @@ class Trial:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         """Try all mutants."""
         items = {item.nodeid: item for item in session.items}
-        called, failed = _forked(lambda: self._observe(session), None)
-        if failed:
-            raise pytest.UsageError(f"{failed}: fails without any mutant")
+        called = self._look_at(session)
         for mutant in self._mutants:
             start_s = time.monotonic()
             tests = self._tests(mutant, called)
@@ -102,9 +108,28 @@ class Trial:
 
     # The parts
 
-    def _observe(self, session: pytest.Session) -> tuple[dict[str, Called], str]:
-        """Run all tests once: what each calls, and the first that fails."""
-        found = {item.nodeid: Called() for item in session.items}
+    def _look_at(self, session: pytest.Session) -> dict[str, Called]:
+        """What each test calls: as it is known, or by running it."""
+        digests = {item.path: hashlib.sha256(item.path.read_bytes()).hexdigest() for item in session.items}
+        known: dict[str, Called] = pickle.loads(self._known.read_bytes()) if self._known.exists() else {}
+        new = [
+            item
+            for item in session.items
+            if item.nodeid not in known or known[item.nodeid].digest != digests[item.path]
+        ]
+        if new:
+            found, failed = _forked(lambda: self._observe(session, new), None)
+            if failed:
+                raise pytest.UsageError(f"{failed}: fails without any mutant")
+            for item in new:
+                found[item.nodeid].digest = digests[item.path]
+            known |= found
+            self._known.write_bytes(pickle.dumps(known))
+        return {item.nodeid: known[item.nodeid] for item in session.items}
+
+    def _observe(self, session: pytest.Session, items: list[pytest.Item]) -> tuple[dict[str, Called], str]:
+        """Run tests once: what each calls, and the first that fails."""
+        found = {item.nodeid: Called() for item in items}
         names: dict[CodeType, tuple[str, str] | None] = {}
 
         def profile(frame: FrameType, event: str, _: object) -> None:
@@ -119,16 +144,16 @@ class Trial:
             if (name_of := names[code]) is not None:
                 self._sinks[-1].add(name_of)
 
-        for item, after in zip(session.items, [*session.items[1:], None], strict=True):
+        for item, after in zip(items, [*items[1:], None], strict=True):
             of_item = found[item.nodeid]
             self._sinks = [of_item.functions]
-            start_s = time.monotonic()
+            start_s = time.process_time()
             threading.setprofile(profile)
             sys.setprofile(profile)
             session.config.hook.pytest_runtest_protocol(item=item, nextitem=after)
             sys.setprofile(None)
-            of_item.seconds = time.monotonic() - start_s
-        for item in session.items:
+            of_item.seconds = time.process_time() - start_s
+        for item in items:
             for fixture in getattr(item, "fixturenames", ()):
                 found[item.nodeid].functions |= self._by_fixture.get(fixture, set())
         return found, self._failed
@@ -164,7 +189,8 @@ def _forked(work: Callable[[], Any], limit_s: float | None) -> Any:
         os.dup2(silence, 1)
         os.dup2(silence, 2)
         if limit_s is not None:
-            signal.setitimer(signal.ITIMER_REAL, limit_s)
+            signal.setitimer(signal.ITIMER_PROF, limit_s)
+            signal.setitimer(signal.ITIMER_REAL, limit_s * WAITING)
             used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
             resource.setrlimit(resource.RLIMIT_AS, (used + MEMORY, used + MEMORY))
         try:

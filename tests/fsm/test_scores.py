@@ -1,11 +1,13 @@
 """What one frame says for every sign, by the published numbers; and what speaks against a complete sentence."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
 from lightgesture.fsm import UNSEEN, Sign, Signs
-from lightgesture.fsm.rules.doubts import find_weak, is_weak
+from lightgesture.fsm.rules.doubts import find_doubt, find_weak, is_weak
+from lightgesture.fsm.rules.readings import Reading, Spoken
 from lightgesture.fsm.rules.scores import SignScores
 
 HIDDEN, UNREAD, LEAST = math.log(0.05), math.log(0.1), math.log(0.01)
@@ -167,3 +169,67 @@ def test_the_numbers_of_a_sentence_count_together_and_no_other_words(caution, fi
     words = ("STOP", "HOVER", "5", "AND", "0", "GO")
     certainties = (0.95, 0.9, first, 0.7, second, 0.8)
     assert find_weak(certainties, words, caution) == weak
+
+
+WORDS = ("STOP", "HOVER", "5", "GO")
+READING = Reading(
+    tuple(Spoken(word, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0) for word in WORDS), 0, 0, 0.0, 0.0, 0, WORDS, 0.0
+)
+
+
+def doubt(caution, margin=50.0, clear=(5.0, 1.0), contested=0.0, passed_s=0.0, misfit=0.0, sure=0.99):
+    """Why a sentence with a number in its third place is in doubt, by what the search says of it."""
+    standing = SimpleNamespace(
+        margin=lambda slot: margin,
+        rival=lambda slot: "STOP HOVER 2 GO",
+        certainties=lambda slot: [sure] * len(WORDS),
+        misfit=lambda slot: (misfit, 1),
+    )
+    clarity = SimpleNamespace(
+        clear=lambda spoken: iter([(0.0, 0.0), clear]), contested=lambda word, after: contested
+    )
+    search = SimpleNamespace(standing=standing, clarity=clarity, beam=SimpleNamespace(longest=[passed_s]))
+    found = find_doubt(search, 0, READING, caution)
+    return None if found is None else (found.reason, found.detail.split(";")[0])
+
+
+LESS = 1e-9
+RIVAL = ("ambiguous", "it could as well be STOP HOVER 2 GO")
+UNSTEADY = ("weak_sign", "5 was not seen steadily")
+ANOTHER = ("ambiguous", "5 looked like another number at times")
+MISFIT = ("does_not_fit", "HOVER is not what was shown")
+
+
+@pytest.mark.parametrize(
+    ("caution", "seen", "expected"),
+    [
+        (1.0, {"margin": 2.5}, None),
+        (1.0, {"margin": 2.5 - LESS}, RIVAL),
+        (2.0, {"margin": 5.0}, None),
+        (2.0, {"margin": 5.0 - LESS}, RIVAL),
+        (0.5, {"margin": 1.25}, None),
+        (1.0, {"sure": 0.69}, ("weak_sign", "5 was not seen well")),
+        # Clear for 0.6 s, or for half of the time.
+        (1.0, {"clear": (0.6, 0.1)}, None),
+        (1.0, {"clear": (0.6 - LESS, 0.5)}, None),
+        (1.0, {"clear": (0.6 - LESS, 0.5 - LESS)}, UNSTEADY),
+        (2.0, {"clear": (1.2, 0.1)}, None),
+        (2.0, {"clear": (1.2 - LESS, 0.6)}, None),
+        (2.0, {"clear": (1.2 - LESS, 0.6 - LESS)}, UNSTEADY),
+        (0.5, {"clear": (0.3 - LESS, 0.25)}, None),
+        (0.5, {"clear": (0.3 - LESS, 0.25 - LESS)}, UNSTEADY),
+        (1.0, {"contested": 0.25}, None),
+        (1.0, {"contested": 0.25 + LESS}, ANOTHER),
+        (2.0, {"contested": 0.125}, None),
+        (2.0, {"contested": 0.125 + LESS}, ANOTHER),
+        (1.0, {"passed_s": 0.38}, None),
+        (1.0, {"passed_s": 0.38 + LESS}, ("passed_over", "0.4 s between two signs were not read")),
+        (2.0, {"passed_s": 0.19 + LESS}, ("passed_over", "0.2 s between two signs were not read")),
+        (1.0, {"misfit": 5.0}, None),
+        (1.0, {"misfit": 5.0 + LESS}, MISFIT),
+        (2.0, {"misfit": 2.5 + LESS}, MISFIT),
+        (0.5, {"misfit": 10.0}, None),
+    ],
+)
+def test_each_bound_of_doubt_and_what_caution_makes_of_it(caution, seen, expected):
+    assert doubt(caution, **{"clear": (5.0, 1.0), **seen}) == expected

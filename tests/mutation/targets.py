@@ -46,6 +46,7 @@ GROUPS: dict[str, Group] = {
             "tests/app/test_front_end.py",
             "tests/app/test_hidden_hands.py",
             "tests/app/test_pipeline.py",
+            "tests/app/test_reading_bounds.py",
             "tests/app/test_reading_memory.py",
             "tests/app/test_standing_readings.py",
         ),

@@ -1,8 +1,8 @@
 """Tests are collected once; each mutant is then a forked process that runs the tests which call its function.
 
 One run of the unaltered code notes which functions each test calls and how long it takes; it is kept as long as the
-test's file stays the same. The quickest tests come first, and the first that fails ends a mutant. Only the processes are
-altered, so that nothing is left of a mutant. Seconds are of the processor, for others may use it.
+test's file stays the same. The quickest tests come first, and the first that fails ends a mutant. Only the processes
+are altered, so that nothing is left of a mutant. Seconds are of the processor, for others may use it.
 """
 
 import hashlib
@@ -48,9 +48,9 @@ class Called:
 class Trial:
     """A plugin of pytest that tries mutants in place of running the tests.
 
-    functions: of the whole group, as (module, qualified name). known: the file with what was seen of the tests. within_s:
-    seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant, what
-    became of it: "killed" or "survived", the test that killed it, and seconds.
+    functions: of the whole group, as (module, qualified name). known: the file with what was seen of the tests.
+    within_s: seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant,
+    what became of it: "killed" or "survived", the test that killed it, and seconds.
     """
 
     def __init__(

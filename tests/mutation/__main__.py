@@ -94,7 +94,8 @@ def _try(name: str, mutants: list[Mutant], file: Path, is_of_survivors: bool, wi
         for mutant in mutants_of(module, source_of(module))
     }
     sources = {mutant.module: source_of(mutant.module) for mutant in waiting}
-    trial = Trial(waiting, sources, functions, file.with_suffix(".calls"), within_s, note)
+    history = [(line["module"], line["function"], line["by"]) for line in known.values() if line["by"]]
+    trial = Trial(waiting, sources, functions, file.with_suffix(".calls"), within_s, history, note)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = folder
         options = ["-q", "-s", "-p", "no:cacheprovider"]

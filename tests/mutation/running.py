@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, field
 from itertools import accumulate
 from pathlib import Path
@@ -32,6 +32,8 @@ SLOWER = 3.0
 """How many times longer than in the first run its tests may take."""
 WAITING = 20.0
 """How many times as many seconds of the clock: others use the machine."""
+START_S = 0.05
+"""Seconds that each test costs besides its own."""
 MEMORY = 4 << 30
 """Bytes of address space that a mutant may take beyond what there is."""
 
@@ -49,8 +51,9 @@ class Trial:
     """A plugin of pytest that tries mutants in place of running the tests.
 
     functions: of the whole group, as (module, qualified name). known: the file with what was seen of the tests.
-    within_s: seconds that the tests of a mutant may take together; slower ones are left out. note: told of each mutant,
-    what became of it: "killed" or "survived", the test that killed it, and seconds.
+    within_s: seconds that the tests of a mutant may take together; others are left out. history: module,
+    function and killer of mutants that were tried before. note: told of each mutant, what became of it: "killed" or
+    "survived", the test that killed it, and seconds.
     """
 
     def __init__(
@@ -60,6 +63,7 @@ class Trial:
         functions: set[tuple[str, str]],
         known: Path,
         within_s: float,
+        history: Iterable[tuple[str, str, str]],
         note: Callable[[Mutant, str, str, float], None],
     ) -> None:
         self._mutants, self._sources, self._within_s, self._note = mutants, sources, within_s, note
@@ -68,6 +72,8 @@ class Trial:
         self._sinks: list[set[tuple[str, str]]] = []
         self._failed = ""
         self._kills: Counter[tuple[str, str, str]] = Counter()
+        for module, function, killer in history:
+            self._count(module, function, killer)
 
     # What pytest asks
 
@@ -88,7 +94,7 @@ class Trial:
                 killer = _forked(attempt, limit_s) if tests else ""
             except ProcessLookupError as error:
                 killer = str(error)
-            self._kills[mutant.module, mutant.function, killer] += 1
+            self._count(mutant.module, mutant.function, killer)
             self._note(mutant, "killed" if killer else "survived", killer, time.monotonic() - start_s)
         return True
 
@@ -107,6 +113,10 @@ class Trial:
             self._by_fixture[fixturedef.argname] |= self._sinks.pop()
 
     # The parts
+
+    def _count(self, module: str, function: str, killer: str) -> None:
+        self._kills[module, function, killer] += 1
+        self._kills[module, "", killer] += 1
 
     def _look_at(self, session: pytest.Session) -> dict[str, Called]:
         """What each test calls: as it is known, or by running it."""
@@ -159,13 +169,18 @@ class Trial:
         return found, self._failed
 
     def _tests(self, mutant: Mutant, called: dict[str, Called]) -> list[str]:
-        """The tests that call a function: first those that have killed others of it, then the quickest."""
+        """The tests that call a function: first those that have killed others of it, then those that killed most of
+        its module for their time, then the quickest; as many as there is time for."""
         name = mutant.module, mutant.function
-        tests = [test for test, what in called.items() if name in what.functions]
-        tests.sort(key=lambda test: called[test].seconds)
+
+        def promise(test: str) -> tuple[float, float, float]:
+            seconds = called[test].seconds
+            of_module = self._kills[mutant.module, "", test]
+            return -self._kills[*name, test], -of_module / (seconds + START_S), seconds
+
+        tests = sorted((test for test, what in called.items() if name in what.functions), key=promise)
         sums = accumulate(called[test].seconds for test in tests)
-        tests = tests[: max(1, sum(seconds <= self._within_s for seconds in sums))]
-        return sorted(tests, key=lambda test: (-self._kills[*name, test], called[test].seconds))
+        return tests[: max(1, sum(seconds <= self._within_s for seconds in sums))]
 
     def _first_failure(self, session: pytest.Session, items: list[pytest.Item]) -> str:
         self._sinks, self._failed = [set()], ""

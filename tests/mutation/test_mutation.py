@@ -102,7 +102,7 @@ def note(mutant, outcome, killer, seconds):
     outcomes.append((mutant.function, mutant.before, mutant.after, outcome, killer))
 functions = {{(mutant.module, mutant.function) for mutant in mutants}}
 for _ in range(2):
-    trial = Trial(mutants, {{"toy": source}}, functions, pathlib.Path("calls"), 9.0, note)
+    trial = Trial(mutants, {{"toy": source}}, functions, pathlib.Path("calls"), 9.0, [], note)
     status = pytest.main(["-q", "-s", "-p", "no:cacheprovider", "test_toy.py"], plugins=[trial])
     del sys.modules["test_toy"]
 print(json.dumps([int(status), outcomes]))

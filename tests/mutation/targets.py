@@ -23,6 +23,17 @@ def _modules(folder: str, package: str, *without: str) -> tuple[str, ...]:
     return tuple(f"lightgesture.{package}.{name}" for name in names if name not in ("__init__", *without))
 
 
+LINK = (
+    "mavlink_missions",
+    "mavlink_modes",
+    "mavlink_parameters",
+    "mavlink_pilot",
+    "mavlink_state",
+    "mavlink_vehicle",
+)
+"""The MAVLink half of the vehicle, whose tests take the time of its time-outs."""
+PROCESSES = ("runner", "watchdog", "watchdog_process")
+"""A thread and a process of its own, in which an exchange of code does not arrive; slow tests hold them."""
 IN_TIME = "bounded_time or at_once or import_is_light"
 
 GROUPS: dict[str, Group] = {
@@ -51,5 +62,9 @@ GROUPS: dict[str, Group] = {
             "tests/app/test_standing_readings.py",
         ),
     ),
-    "executor": Group(_modules("lightgesture/vehicle", "vehicle"), ("tests/app/vehicle",)),
+    "executor": Group(
+        _modules("lightgesture/vehicle", "vehicle", *LINK, *PROCESSES),
+        tuple(f"tests/app/vehicle/test_{name}.py" for name in ("executor", "guard", "pilot", "profile")),
+    ),
+    "link": Group(tuple(f"lightgesture.vehicle.{name}" for name in LINK), ("tests/app/vehicle",)),
 }

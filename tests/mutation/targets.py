@@ -64,7 +64,9 @@ GROUPS: dict[str, Group] = {
     ),
     "executor": Group(
         _modules("lightgesture/vehicle", "vehicle", *LINK, *PROCESSES),
-        tuple(f"tests/app/vehicle/test_{name}.py" for name in ("executor", "guard", "pilot", "profile")),
+        tuple(
+            f"tests/app/vehicle/test_{name}.py" for name in ("executor", "guard", "pilot", "profile", "steps")
+        ),
     ),
     "link": Group(tuple(f"lightgesture.vehicle.{name}" for name in LINK), ("tests/app/vehicle",)),
 }

@@ -11,6 +11,7 @@ import pytest
 
 from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
 from lightgesture.features.track.births import (
+    PAIR_S,
     PairEvidence,
     believed_pair,
     believed_single,
@@ -97,6 +98,11 @@ def test_a_run_of_good_frames_goes_on_and_a_missed_one_ends_it_after_a_while():
 )
 def test_a_pair_is_believed_at_once_or_after_a_while(level, since_s, hits, expected):
     assert is_verified(PairEvidence(level, since_s, NOW, hits), LEAST) == expected
+
+
+def test_a_pair_must_last_as_long_as_is_told():
+    assert is_verified(PairEvidence(0.25, 0.0, PAIR_S, 2), LEAST)
+    assert not is_verified(PairEvidence(0.25, 0.0, PAIR_S - LESS, 2), LEAST)
 
 
 def test_evidence_is_gathered_of_pairs_that_once_scored_enough(track):
@@ -430,7 +436,7 @@ def test_only_boxes_in_the_picture_with_a_score_are_looked_at(region, frame):
         region(40, 520),
         region(40, 40, score=math.nan),
     ]
-    unsound += [replace(region(40, 40), box=(0, 0, 0, 9)), replace(region(40, 40), box=(0, 0, 9, 0))]
+    unsound += [replace(region(40, 40), box=(5, 5, 0, 9)), replace(region(40, 40), box=(5, 5, 9, 0))]
     observed = look_at(frame([*sound, *unsound]), LEAST)
     assert list(observed.regions) == list(range(len(sound)))
 
@@ -484,3 +490,40 @@ def test_both_hands_leap_to_a_pair_that_is_about_as_good_as_they_were(track, reg
     weak = [region(200, 100, score=0.4), region(500, 100, score=0.4)]
     assert matches(hands, weak, [(0.5, 0, 1)]) == {1: (0, True), 2: (1, True)}
     assert matches(hands, weak, [(0.5 - LESS, 0, 1)]) == {}
+
+
+def test_a_hand_that_leaps_takes_the_pairs_region_that_the_other_hand_left(track, region):
+    """The other hand found its own inside the gate; the pair must hold what it found."""
+    hands = [track(1, 100), track(2, 400)]
+    regions = [region(100, 100, score=0.4), region(500, 100, score=0.4), region(300, 100, score=0.4)]
+    assert matches(hands, regions, [(0.75, 0, 1)]) == {1: (0, False), 2: (1, True)}
+    assert matches(hands, regions, [(0.75, 1, 2)]) == {1: (0, False)}
+    assert matches(hands, regions) == {1: (0, False)}
+
+
+def test_a_hand_that_leaps_alone_takes_a_region_that_is_believed_by_itself(track, region):
+    hands = [track(1, 100), track(2, 400)]
+    believed = [region(100, 100), region(500, 100, score=0.5)]
+    assert matches(hands, believed) == {1: (0, False), 2: (1, True)}
+    doubted = [region(100, 100), region(500, 100, score=0.5 - LESS)]
+    assert matches(hands, doubted) == {1: (0, False)}
+    assert matches(hands, [region(100, 100), region(400, 100)]) == {1: (0, False), 2: (1, False)}
+
+
+def test_what_is_under_observation_takes_what_the_hands_left(track, region):
+    watched = [new(track, 3, x=100), new(track, 4, x=300)]
+    regions = [region(100, 100), region(300, 100, score=0.2), region(320, 100, score=0.2 - LESS)]
+    assert matches([track(1, 100)], regions, tentative=watched) == {1: (0, False), 4: (1, False)}
+
+
+@pytest.mark.parametrize("missed", [0, 1])
+def test_hands_that_met_come_back_in_the_order_in_which_they_went(track, region, missed):
+    """Two regions about as near to both: the order of their middles counts where one hand was behind the other."""
+    hands = [track(1, 100, seen_x=140.0, missed=missed), track(2, 110, seen_x=70.0)]
+    regions = [region(104, 100, width=40, height=80), region(106, 100, width=160, height=80)]
+    found = matches(hands, regions)
+    narrow, wide = regions
+    assert narrow.box[0] > wide.box[0]
+    assert set(found) == {1, 2}
+    turned = matches([replace(hands[0], seen_x=70.0), replace(hands[1], seen_x=140.0)], regions)
+    assert (found == turned) == (not missed)

@@ -1,12 +1,19 @@
 """Pictures and parameters as steps of a task, tick by tick, without a link and without a wait."""
 
+import threading
 from concurrent.futures import Future
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from lightgesture.fsm import Notice, State
+from lightgesture.fsm.events import Growth
+from lightgesture.records import FrameRecord, Hand
 from lightgesture.vehicle import (
+    NEUTRAL,
     Picture,
     ReadParameter,
     Reply,
@@ -15,10 +22,14 @@ from lightgesture.vehicle import (
     TakePictures,
     WriteParameter,
 )
-from lightgesture.vehicle.bench import Frame, seconds_of
+from lightgesture.vehicle.bench import Frame, Helper, seconds_of
 from lightgesture.vehicle.camera_run import GRACE_S, MOST_WAITING, CameraRun, OwnPictures
+from lightgesture.vehicle.guard import Senses
+from lightgesture.vehicle.intake import MAX_AGE_S, Intake
+from lightgesture.vehicle.motion import Motion
 from lightgesture.vehicle.parameter_run import ParameterRun, changed
 from lightgesture.vehicle.profile import ParameterTable
+from lightgesture.vehicle.profile_file import load_vehicle
 from lightgesture.vehicle.steps import CameraStep
 
 IMAGE = np.zeros((8, 8, 3), np.uint8)
@@ -202,6 +213,8 @@ TABLE = ParameterTable(number=1, name="SPEED", step=2.0, minimum=1.0, maximum=6.
         ("DECREASE", 3.0, 1.0),
         ("DECREASE", 2.0, 1.0),
         ("DECREASE", 1.0, "SPEED is 1, at its limit already"),
+        ("INCREASE", 1.0, 3.0),
+        ("DECREASE", 6.0, 4.0),
         ("INCREASE", 6.5, "SPEED is 6.5, outside of 1 to 6"),
         ("DECREASE", 0.5, "SPEED is 0.5, outside of 1 to 6"),
         ("DEFAULT", 5.0, 3.0),
@@ -253,3 +266,177 @@ def test_a_parameter_of_the_executor_is_changed_here(instruction):
     run.begin(own, START_S)
     assert run.tick(own, START_S) == "done"
     assert own.interval_s == 0.25  # from its default
+
+
+# What the executor is shown
+
+
+def shown(*records, image=IMAGE):
+    """An intake that was shown this at START_S, a second after an empty frame."""
+    clock = iter([START_S - 1, START_S])
+    intake = Intake(lambda: next(clock))
+    intake.show(IMAGE, [])
+    intake.show(image, list(records))
+    return intake
+
+
+def frame_record(*hands):
+    return FrameRecord(source="cam", frame=1, time_s=1.0, hands=hands)
+
+
+def state(dwell=None):
+    return State(source="cam", frame=1, time_s=1.0, state="idle", sentence="", dwell=dwell)
+
+
+def notice(reason):
+    return Notice(source="cam", frame=1, time_s=1.0, reason=reason, detail="no frame came")
+
+
+HAND = Hand(side="left", token=None, confidence=0.1, box=(0, 0, 9, 9), track=1, reason="unknown_shape")
+GROWTH = Growth(pair=("5", "5"), word=None, progress=0.5)
+
+
+@pytest.mark.parametrize(
+    ("record", "is_seen"),
+    [
+        (frame_record(HAND), True),
+        (frame_record(), False),
+        (state(GROWTH), True),
+        (state(), False),
+        (notice("unknown_pair"), False),
+    ],
+)
+def test_a_diver_is_seen_by_hands_and_by_signs_that_grow(record, is_seen):
+    senses = shown(record).take(START_S).senses
+    assert senses == Senses(picture_s=START_S, hand_s=START_S if is_seen else None, hole=None)
+
+
+def test_a_hole_in_the_pictures_is_told_once_and_other_notices_are_none():
+    intake = shown(notice("gap"), notice("repeat"))
+    assert intake.take(START_S).senses.hole == "no frame came"
+    assert intake.take(START_S).senses.hole is None
+    assert shown(notice("repeat")).take(START_S).senses.hole is None
+
+
+def test_records_without_a_picture_make_none_fresh():
+    taken = shown(frame_record(HAND), image=None).take(START_S)
+    assert (taken.senses.picture_s, taken.senses.hand_s) == (START_S - 1, START_S)
+    assert taken.frame == Frame(IMAGE, START_S - 1)
+
+
+@pytest.mark.parametrize(("late_s", "is_new"), [(0.0, True), (MAX_AGE_S, True), (MAX_AGE_S + 0.01, False)])
+def test_an_instruction_is_fresh_for_a_moment(instruction, late_s, is_new):
+    record = instruction()
+    intake = shown(record, state())
+    taken = intake.take(START_S + late_s)
+    assert (taken.new, taken.late) == (((record,), ()) if is_new else ((), (record,)))
+    assert intake.take(START_S).new == ()
+
+
+# A nod and a shake, under the guard
+
+
+class Rig:
+    """A motion of the bundled profile on a vehicle that says what a test tells it."""
+
+    def __init__(self, **status):
+        profile = load_vehicle("ardusub")
+        self.sticks, self.held = Recorder(), []
+        known = {"heard_s": START_S, "is_armed": True, **status}
+        self.bench = SimpleNamespace(profile=profile, sticks=self.sticks, cap=0.4, status=Status(**known))
+        self.motion = Motion(self.bench)
+
+    def tick(self, after_s, **status):
+        now_s = START_S + after_s
+        self.bench.status = replace(self.bench.status, heard_s=now_s, **status)
+        self.motion.tick(Senses(picture_s=now_s, hand_s=now_s), now_s)
+        return self.sticks.now
+
+
+class Recorder:
+    """now: what the sticks are held at; None: not held."""
+
+    now = None
+    releases = 0
+
+    def hold(self, stick):
+        self.now = stick
+
+    def release(self, now_s, to_another=False):
+        self.now = None
+        self.releases += 1
+
+
+def test_a_nod_begins_in_the_middle_and_comes_to_its_end():
+    rig = Rig()
+    assert rig.tick(0.0) is None
+    rig.motion.ask("nod")
+    assert rig.tick(0.1) == NEUTRAL
+    assert rig.tick(0.3).z > 0
+    table = rig.bench.profile.motion
+    assert rig.tick(0.1 + table.beat_s * 1.5).z < 0
+    assert rig.tick(0.1 + table.beat_s * 2 * table.times - 0.01) is not None
+    assert rig.tick(0.1 + table.beat_s * 2 * table.times + 0.01) is None
+    assert rig.tick(9.0) is None
+    assert rig.sticks.releases == 1
+
+
+@pytest.mark.parametrize(
+    "status",
+    [
+        {"trouble": "two vehicles"},
+        {"is_armed": False},
+        {"pilot_s": START_S + 0.1},
+        {"stick_s": START_S + 0.1},
+    ],
+)
+def test_what_stands_against_a_nod_forgets_it_and_what_comes_ends_it(status):
+    rig = Rig()
+    rig.motion.ask("nod")
+    assert rig.tick(0.1, **status) is None
+    cleared = {"trouble": "", "is_armed": True, "pilot_s": None, "stick_s": None}
+    assert rig.tick(0.2, **cleared) is None
+    rig.motion.ask("nod")
+    assert rig.tick(0.3) == NEUTRAL
+    later = {key: START_S + 0.4 if key.endswith("_s") else value for key, value in status.items()}
+    assert rig.tick(0.5, **later) is None
+    assert rig.tick(0.6, **cleared) is None
+
+
+def test_a_nod_is_not_asked_for_twice_nor_where_it_is_not_allowed():
+    rig = Rig()
+    rig.motion.ask("nod")
+    rig.motion.ask("shake")
+    rig.tick(0.0)
+    assert rig.tick(0.25).r == 0
+    rig.motion.stop(START_S)
+    rig.motion.is_allowed = False
+    rig.motion.ask("nod")
+    assert rig.tick(0.5) is None
+    releases = rig.sticks.releases
+    rig.motion.stop(START_S)
+    assert rig.sticks.releases == releases
+
+
+def test_a_nod_that_was_asked_for_and_stopped_before_it_began_does_not_begin():
+    rig = Rig()
+    rig.motion.ask("nod")
+    rig.motion.stop(START_S)
+    assert rig.tick(0.1) is None
+
+
+# One thread for what takes its time
+
+
+def test_what_has_not_begun_is_left_undone_at_the_end():
+    helper, gate, done = Helper(), threading.Event(), []
+    helper.close()
+    first = helper.start(lambda: gate.wait(10) and "first")
+    second = helper.start(lambda: done.append("second"))
+    helper.close()
+    gate.set()
+    assert first.result(10) == "first"
+    assert second.cancelled()
+    assert done == []
+    with pytest.raises(RuntimeError):
+        helper.start(str)

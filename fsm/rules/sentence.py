@@ -14,7 +14,7 @@ is issued as soon as its end word was shown for the least length, if all of thes
 import math
 from typing import Final
 
-from lightgesture.fsm.language.forms import spell
+from lightgesture.fsm.language.forms import is_digit, spell
 from lightgesture.fsm.language.grammar import Grammar
 from lightgesture.fsm.language.settings import SentenceSettings
 from lightgesture.fsm.reader import CONFIRMING, Reader
@@ -231,7 +231,7 @@ class SentenceRule:
         sentence = telling.open(reading, words, certainties, now_s)
         kept = min(common(words, telling.told), len(words) - 1)
         telling.tell_words(reading, words[:-1], kept, certainties)
-        if self._grammar.limits.max_digits < _longest_number(words):
+        if self._grammar.limits.max_digits < _most_digits(words, self._grammar.vocabulary.join):
             most = self._grammar.limits.max_digits
             self._reject(Doubt(reason="limit", detail=f"a number has at most {most} digits"))
             return
@@ -251,6 +251,13 @@ class SentenceRule:
         self._close()
 
 
-def _longest_number(words: tuple[str, ...]) -> int:
-    """Most digits of a number among the words of a sentence."""
-    return max((len(part) for part in spell(words, None).split() if part.isdigit()), default=0)
+def _most_digits(words: tuple[str, ...], join: str | None) -> int:
+    """Most digits of a number among the words of a sentence, as they were signed: joined or not, leading zeros too."""
+    most = count = 0
+    for word in words:
+        if is_digit(word):
+            count += 1
+            most = max(most, count)
+        elif word != join:
+            count = 0
+    return most

@@ -19,6 +19,10 @@ from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
 from lightgesture.parser import MayStandAlone
 
 _HOLDS = ("hold", "hold_seconds")
+MOST_TOLD = 3
+"""Wrong keys and values of a file that are told; each may tell all keys that there are."""
+LONGEST_SHOWN = 60
+"""Characters of a wrong one that are shown."""
 
 
 def add_options(parser: argparse.ArgumentParser, *commands: str) -> None:
@@ -97,16 +101,19 @@ def _help(field: FieldInfo, metavar: str | None) -> str:
 
 
 def explain(error: ValidationError, show: Callable[[str], str]) -> str:
-    """What is wrong with which options, in one line; `show` writes an option's name as its user did."""
-    return "; ".join(_explain_one(detail, show) for detail in error.errors(include_url=False))
+    """What is wrong with which options, the first few, in one line; `show` writes an option's name as its user did."""
+    details = error.errors(include_url=False)
+    told = [_explain_one(detail, show) for detail in details[:MOST_TOLD]]
+    more = [f"and {len(details) - len(told)} more"] if len(details) > len(told) else []
+    return "; ".join([*told, *more])
 
 
 def _explain_one(detail: ErrorDetails, show: Any) -> str:
     key = str(detail["loc"][0])
     if detail["type"] == "extra_forbidden":
         known = [field.alias or name for name, field in DecodeSettings.model_fields.items()]
-        return f"{key}: unknown key; {suggest_key(key, known)}"
-    shown = repr(detail["input"])[:60]
+        return f"{key[:LONGEST_SHOWN]}: unknown key; {suggest_key(key, known)}"
+    shown = repr(detail["input"])[:LONGEST_SHOWN]
     if detail["type"] == "string_pattern_mismatch":
         extra: Any = DecodeSettings.model_fields[key].json_schema_extra
         return f"{show(key)}: should be {extra['metavar']}, not {shown}; change it"

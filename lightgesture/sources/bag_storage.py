@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ from lightgesture.errors import InputError
 from lightgesture.sources.bag_messages import CDR, ROS1
 from lightgesture.sources.bag_scan import Channel, Message, ScanError, scan
 from lightgesture.sources.folder import natural_key
-from lightgesture.sources.inflate import inflate
+from lightgesture.sources.inflate import inflate, inflate_whole
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
@@ -140,7 +141,23 @@ def _open_reader(path: Path, name: str) -> "AnyReader":
         from rosbags.typesys import Stores, get_typestore
     except ImportError:
         raise InputError(f"{name}: is a bag; install lightgesture[bag] to read it") from None
+    _bound_chunks()
     # Older ROS 2 bags do not say what their messages look like, and the reader wants to know.
     reader = AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE))
     reader.open()
     return reader
+
+
+def _bound_chunks() -> None:
+    """Have the reader unpack no chunk beyond our bound: its tables name functions that know none."""
+    from rosbags.rosbag1.reader import decompressors
+    from rosbags.rosbag2.storage_mcap import DECOMPRESSORS
+
+    for compression in ("bz2", "lz4"):
+        decompressors[compression] = partial(inflate_whole, compression=compression)
+    for compression in ("lz4", "zstd"):
+        DECOMPRESSORS[compression] = partial(_sized, compression)
+
+
+def _sized(compression: str, content: bytes, _size: int) -> bytes:
+    return inflate_whole(content, compression)

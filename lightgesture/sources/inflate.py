@@ -28,6 +28,14 @@ def inflate(content: bytes, compression: str) -> bytes:
     return bytes(whole)
 
 
+def inflate_whole(content: bytes, compression: str) -> bytes:
+    """The same; ValueError where that is more than `LARGEST`."""
+    whole = inflate(content, compression)
+    if len(whole) >= LARGEST:
+        raise ValueError(f"a chunk unpacks to {LARGEST} bytes or more")
+    return whole
+
+
 def _decompressor(compression: str) -> Any:
     if compression in ("", "none"):
         return _as_it_is

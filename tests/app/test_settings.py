@@ -142,6 +142,18 @@ def test_wrong_file(config, text, message):
     assert str(caught.value).startswith(f"{path}: {message}")
 
 
+def test_a_file_in_which_much_is_wrong_tells_the_first_and_how_much_more(config):
+    """Found by fuzzing: each unknown key told all known ones."""
+    path = config("".join(f"{letter * 90} = 1\n" for letter in "vwxyz"))
+    with pytest.raises(UsageError) as caught:
+        load("--config", path)
+    message = str(caught.value)
+    assert f"{'x' * 60}: unknown key; use model" in message
+    assert "y" * 60 not in message
+    assert message.endswith("; and 2 more")
+    assert len(message) < 2000
+
+
 def test_file_that_cannot_be_read(config, tmp_path):
     with pytest.raises(UsageError, match="no such file; name an existing configuration"):
         load("--config", tmp_path / "none.toml")

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lightgesture.fsm import Decoder, Sign, Signs
-from lightgesture.fsm.rules.clarity import MOST_RUNS, Clarity
+from lightgesture.fsm.rules.clarity import CLEAR, LIKELY, MOST_RUNS, NEARLY, Clarity
 from lightgesture.fsm.rules.readings import Spoken
+from lightgesture.fsm.rules.windows import PASSAGE_S
 
 DOUBTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.6, {"none": 0.6, "1": 0.2}))
 CONTESTED = Signs(Sign("ok", 0.97, {"ok": 0.97}), Sign(None, 0.5, {"1": 0.5, "0": 0.45}))
@@ -133,3 +134,115 @@ def test_a_flicker_does_not_fill_the_memory():
     start = MOST_RUNS * 0.4
     words = (spoken(0, start), spoken(1, start + 1), spoken(2, start + 2))
     assert list(clarity.clear(words)) == [pytest.approx((1.0, 1.0))]
+
+
+# Bounds, each by itself
+
+
+def seen(clarity, score, seconds, column=1, others=-9.0):
+    """Show one sign with a score for so long, in one frame."""
+    scores = np.full(8, others)
+    scores[column] = score
+    clarity.step(scores, seconds, seconds)
+
+
+def clear_seconds(clarity, began, until):
+    """Of the sign 1 between signs that were not shown."""
+    words = (spoken(6, 0.0), spoken(1, began), spoken(7, until))
+    return next(iter(clarity.clear(words)))[0]
+
+
+@pytest.mark.parametrize(("score", "expected"), [(CLEAR, 0.5), (CLEAR - 1e-9, 0.0)])
+def test_a_sign_is_clear_from_a_score_on(score, expected):
+    clarity = Clarity()
+    seen(clarity, score, 0.5)
+    assert clear_seconds(clarity, 0.0, 9.0) == expected
+
+
+@pytest.mark.parametrize(("passage_s", "expected"), [(0.1, 1.0), (0.1005, 1.0), (0.102, 0.5), (0.5, 0.5)])
+def test_a_sign_that_changes_its_mind_for_a_passage_is_one(passage_s, expected):
+    """Counted from the end of the first half on, that half counts where both are one."""
+    clarity = Clarity()
+    for score, seconds in [(-0.1, 0.5), (-9.0, passage_s), (-0.1, 0.5)]:
+        seen(clarity, score, seconds)
+    assert clear_seconds(clarity, 0.5, 9.0) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("others", "expected"), [(2, 1.0), (3, 1.0), (4, 0.5)])
+def test_a_sign_goes_on_past_a_few_others(others, expected):
+    clarity = Clarity()
+    seen(clarity, -0.1, 0.5)
+    for column in range(2, 2 + others):
+        seen(clarity, -0.1, 0.02, column)
+    seen(clarity, -0.1, 0.5)
+    assert clear_seconds(clarity, 0.5, 9.0) == pytest.approx(expected)
+
+
+def test_only_what_touches_the_time_of_a_word_counts_for_it():
+    clarity = Clarity()
+    for score in (-9.0, -0.1, -9.0):
+        seen(clarity, score, 0.5)
+    assert clear_seconds(clarity, 0.99, 9.0) == 0.5
+    assert clear_seconds(clarity, 1.0, 9.0) == 0.0
+    assert clear_seconds(clarity, 0.0, 0.51) == 0.5
+    assert clear_seconds(clarity, 0.0, 0.5) == 0.0
+
+
+def contested(clarity, began=0.0, until=9.0):
+    return clarity.contested(spoken(1, began), spoken(7, until))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "is_contested"),
+    [
+        (-0.5, -0.5 + NEARLY, False),
+        (-0.5, -0.5 + NEARLY + 1e-9, True),
+        (LIKELY + 0.1, LIKELY, False),
+        (LIKELY + 0.1, LIKELY + 1e-9, True),
+        (LIKELY, LIKELY - 0.1, False),
+        (-0.1, -9.0, False),
+    ],
+)
+def test_another_number_contests_one_that_it_is_half_as_likely_as(first, second, is_contested):
+    clarity = Clarity([1, 2])
+    scores = np.full(8, -9.0)
+    scores[1], scores[2], scores[3] = first, second, 0.0  # what is no number contests none
+    clarity.step(scores, 0.25, 0.25)
+    share = contested(clarity)
+    assert (share > 0) == is_contested
+    scores[2] = -9.0
+    clarity.step(scores, 0.75, 0.75)
+    assert 0 < contested(clarity) < share or not is_contested
+
+
+@pytest.mark.parametrize(("score", "expected"), [(LIKELY, 1.0), (LIKELY - 1e-9, 0.0)])
+def test_a_number_leads_only_where_it_is_likely(score, expected):
+    clarity = Clarity([1, 2])
+    seen(clarity, score, 0.5, column=2)
+    assert contested(clarity) == expected
+
+
+def test_with_a_single_number_none_is_contested():
+    clarity = Clarity([2])
+    seen(clarity, -0.1, 0.5, column=2)
+    assert contested(clarity) == 0.0
+
+
+def test_a_number_leads_without_a_break():
+    """Two leads of another number: only the second lies in the time of the word."""
+    clarity = Clarity([1, 2])
+    for score, column in [(-0.1, 2), (-9.0, 2), (-0.1, 2), (-0.1, 1)]:
+        seen(clarity, score, 0.5, column)
+    assert contested(clarity, began=1.0) == pytest.approx(0.5)
+    assert contested(clarity, began=0.0) == pytest.approx(2 / 3)
+
+
+def test_a_lead_counts_for_the_word_in_whose_time_its_middle_lies():
+    clarity = Clarity([1, 2])
+    seen(clarity, -0.1, 0.5, column=2)
+    seen(clarity, -0.1, 0.5, column=1)
+    middle = 0.25 + PASSAGE_S
+    assert contested(clarity, began=middle) == pytest.approx(0.5)
+    assert contested(clarity, began=middle + 1e-9) == 0.0
+    assert contested(clarity, until=middle + 1e-9) == 1.0
+    assert contested(clarity, until=middle) == 0.0

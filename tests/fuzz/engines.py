@@ -51,7 +51,9 @@ class Tally:
         """Write what is known."""
         self.seconds = round(time.monotonic() - self.start_s, 1)
         content = {key: value for key, value in asdict(self).items() if key not in ("file", "start_s")}
-        self.file.write_text(json.dumps(content) + "\n")
+        part = self.file.with_suffix(".part")  # a process that is killed meanwhile leaves the note before
+        part.write_text(json.dumps(content) + "\n")
+        part.replace(self.file)
 
 
 class Feeder:

@@ -3,15 +3,20 @@
 import bz2
 import struct
 import zlib
+from contextlib import closing, suppress
 
 import av
 import cv2
 import numpy as np
 import pytest
+from rosbags import rosbag1, rosbag2
+from rosbags.typesys import Stores, get_typestore
 
 from lightgesture.errors import InputError
 from lightgesture.sources import decoding, inflate, pictures, video
 from lightgesture.sources.bag_messages import PROTOBUF, read_message
+from lightgesture.sources.bag_scan import ScanError
+from lightgesture.sources.bag_storage import Bag
 from lightgesture.sources.picture_size import picture_size
 from lightgesture.sources.pictures import decode_picture, read_picture
 from lightgesture.sources.video import VideoFile
@@ -151,6 +156,34 @@ def test_a_chunk_that_unpacks_to_too_much_is_cut_there(monkeypatch):
     monkeypatch.setattr(inflate, "LARGEST", 1 << 20)
     assert len(inflate.inflate(packed, "bz2")) == 1 << 20
     assert len(inflate.inflate(bytes(2 << 20), "none")) == 1 << 20
+
+
+@pytest.mark.parametrize("kind", ["bz2", "lz4", "zstd"])
+def test_a_chunk_of_a_whole_bag_unpacks_to_no_more(tmp_path, monkeypatch, kind):
+    """What the bag's own reader unpacks is bounded as what is read from the start of a damaged bag."""
+    store = get_typestore(Stores.ROS2_HUMBLE if kind == "zstd" else Stores.ROS1_NOETIC)
+    if kind == "zstd":
+        writer = rosbag2.Writer(tmp_path / "dive", version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
+        writer.set_compression(rosbag2.CompressionMode.STORAGE, rosbag2.CompressionFormat.ZSTD)
+    else:
+        writer = rosbag1.Writer(tmp_path / "dive.bag")
+        writer.set_compression(rosbag1.Writer.CompressionFormat[kind.upper()])
+    name = "std_msgs/msg/String"
+    serialize = store.serialize_cdr if kind == "zstd" else store.serialize_ros1
+    with writer:
+        topic = writer.add_connection("/text", name, typestore=store)
+        for number in range(3):
+            writer.write(topic, 10**18 + number, serialize(store.types[name](data="a" * 200_000), name))
+    path = str(next(tmp_path.glob("dive*/*.mcap" if kind == "zstd" else "dive.bag")))
+
+    def messages():
+        bag = Bag(path)
+        with suppress(ScanError), closing(bag):
+            yield from bag.messages("/text")
+
+    assert len(list(messages())) == 3
+    monkeypatch.setattr(inflate, "LARGEST", 300_000)
+    assert len(list(messages())) == 1
 
 
 @pytest.mark.parametrize(

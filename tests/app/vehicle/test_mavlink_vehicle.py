@@ -340,3 +340,12 @@ def test_nothing_that_is_sent_arms_or_disarms(boat, autopilot):
     assert common.MAV_CMD_COMPONENT_ARM_DISARM not in {getattr(one, "command", None) for one in sent}
     assert not any(getattr(one, "base_mode", 0) & 128 for one in sent)
     assert not any(getattr(one, "buttons", 0) for one in sent)
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "items", "state"),
+    [(2, 2, 3, "accepted"), (2, 2, 2, "refused"), (2, None, 3, "accepted"), (0, 0, 1, "accepted")],
+)
+def test_a_part_of_a_mission_may_be_one_item(boat, autopilot, first, last, items, state):
+    autopilot.items = items
+    assert boat.order(StartMission(first=first, last=last, mode="AUTO")).state == state

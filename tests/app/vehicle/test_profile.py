@@ -1,12 +1,14 @@
 """Profiles: those of the package, and what is wrong in others."""
 
 import pytest
+from pydantic import ValidationError
 
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import UsageError
 from lightgesture.fsm import load_grammar
 from lightgesture.sinks.mavlink_map import COMMANDS
 from lightgesture.vehicle.opening import open_runner
+from lightgesture.vehicle.profile import ParameterTable
 from lightgesture.vehicle.profile_file import BUNDLED, load_vehicle
 from lightgesture.vehicle.task import plan_for
 
@@ -108,3 +110,28 @@ def test_a_program_of_its_own_goes_before_any_program(tmp_path, instruction):
     profile = load_vehicle(str(path))
     waits = [profile.table_for(instruction(f"STOP EXEC {number} GO")).steps[0].wait for number in (1, 2, 3)]
     assert waits == [1, 2, 1]
+
+
+@pytest.mark.parametrize(
+    ("name", "own", "minimum", "maximum", "default", "is_right"),
+    [
+        ("SPEED", False, 2, 5, 2, True),
+        ("SPEED", False, 2, 5, 5, True),
+        ("SPEED", False, 2, 5, 1.9, False),
+        ("SPEED", False, 2, 5, 5.1, False),
+        ("SPEED", False, -900, 900, 0, True),
+        ("cap", True, 0.05, 1.0, 0.4, True),
+        ("cap", True, 0.04, 1.0, 0.4, False),
+        ("cap", True, 0.05, 1.01, 0.4, False),
+        ("cap", False, 0.0, 9.0, 0.4, True),  # the vehicle's own of that name
+        ("speed", True, 0.1, 1.0, 0.4, False),
+    ],
+)
+def test_limits_of_parameters(name, own, minimum, maximum, default, is_right):
+    fields = {"number": 1, "name": name, "own": own, "step": 0.1}
+    fields |= {"minimum": minimum, "maximum": maximum, "default": default}
+    if is_right:
+        assert ParameterTable(**fields).default == default
+    else:
+        with pytest.raises(ValidationError):
+            ParameterTable(**fields)

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from lightgesture.features.tags.detector import ArucoTags, TagSettings, busyness, make_detector
+from lightgesture.features.tags.detector import ArucoTags, busyness, make_detector
+from lightgesture.features.tags.settings import TagSettings
 from lightgesture.features.tags.tag import DICTIONARIES, cells_of, dictionary, examine
 from lightgesture.fsm import load_grammar
 from lightgesture.fsm.language.cards import FAMILIES

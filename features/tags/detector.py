@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lightgesture.features.tags.apriltag import AprilTags
 from lightgesture.features.tags.following import follow_corners
-from lightgesture.features.tags.outlines import read_outlines
+from lightgesture.features.tags.outlines import dark_inside, read_outlines
 from lightgesture.features.tags.sampling import OUTLINE_PX, grown
 from lightgesture.features.tags.settings import TagSettings
 from lightgesture.features.tags.tag import Tag, cells_of, checked, dictionary
@@ -24,6 +24,10 @@ DetectorName = Literal["aruco", "apriltag"]
 WINDOWS_PX: Final = (15, 7, 23)
 """Windows of the thresholds, pixels, the one that finds most first. OpenCV's own, 3, 13 and 23, lose tags whose cells
 are 5 pixels wide where the card is no brighter than what is behind it."""
+
+GROUP_RATE: Final = 0.03
+"""How near the corners of two outlines are for the two to be one, as a share of the perimeter. By OpenCV's own, 0.125,
+a tag is one with its white edge, and gone with it where it cannot be named; an edge of a cell is 0.044 away."""
 
 ROWS_STEP: Final = 8
 """How busy a picture is, one row of so many tells."""
@@ -82,8 +86,9 @@ class ArucoTags:
         parameters.adaptiveThreshWinSizeMin, parameters.adaptiveThreshWinSizeMax = windows
         if step is not None:
             parameters.adaptiveThreshWinSizeStep = step
-        # The white edge of a card and its tag are one candidate to OpenCV, and else gone with the edge.
+        # At the border of the picture the white edge of a card may be all there is of it.
         parameters.minDistanceToBorder = 0
+        parameters.minMarkerDistanceRate = GROUP_RATE
         parameters.minMarkerPerimeterRate = self._settings.least_perimeter
         return parameters
 
@@ -157,21 +162,29 @@ class ArucoTags:
             larger = cv2.resize(window, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
             window = np.asarray(larger, np.uint8)
         corners, ids, others = detector.detectMarkers(window)
-        named, rejected = (self._placed(outlines, scale, corner) for outlines in (corners, others))
         numbers = [] if ids is None else [int(number) for number in ids.ravel()]
-        read = read_outlines(grey, rejected, self._family, self._settings.least_margin)
-        return self._checked(grey, zip(numbers, named, strict=True)), self._checked(grey, read)
+        named = zip(numbers, self._placed(_stacked(corners), scale, corner), strict=True)
+        margin = self._settings.least_margin
+        rejected = dark_inside(window, _stacked(others), self._family, margin)
+        read = read_outlines(grey, self._placed(rejected, scale, corner), self._family, margin)
+        return self._checked(grey, named), self._checked(grey, read)
 
-    def _placed(self, outlines: Sequence[Float], scale: float, corner: tuple[int, int]) -> Float:
-        """Outlines of a window where they are in the picture, (k, 4, 2)."""
-        found = np.array(outlines, np.float32).reshape(-1, 4, 2)
+    def _placed(self, outlines: Float, scale: float, corner: tuple[int, int]) -> Float:
+        """Outlines of a window, (k, 4, 2), where they are in the picture."""
+        if not len(outlines):
+            return outlines
         half, origin = np.float32(0.5), np.array(corner, np.float32)
-        return grown((found + half) / np.float32(scale) - half + origin, OUTLINE_PX / scale)
+        return grown((outlines + half) / np.float32(scale) - half + origin, OUTLINE_PX / scale)
 
     def _checked(self, grey: Grey, read: Iterable[tuple[int, Float]]) -> list[Tag]:
         """Those whose cells bear them out."""
         tags = (checked(grey, self._family, number, corners, self._settings) for number, corners in read)
         return [tag for tag in tags if tag is not None]
+
+
+def _stacked(outlines: Sequence[Float]) -> Float:
+    """Outlines as OpenCV gives them, each (1, 4, 2), as (k, 4, 2)."""
+    return np.array(outlines, np.float32).reshape(-1, 4, 2)
 
 
 def _apart(one: Tag, other: Tag) -> float:

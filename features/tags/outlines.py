@@ -18,6 +18,9 @@ from lightgesture.features.types import Float
 RING_SHARE: Final = 0.9
 """Least share of the cells of the black ring that are darker than the white edge: an outline with less is no tag."""
 
+ALONG: Final = (0.2, 0.5, 0.8)
+"""Where on each side of an outline it is looked at first."""
+
 ROUNDS: Final = 3
 """Rounds in which white and black are told apart (Ridler and Calvard, IEEE Trans. SMC 8(8), 1978)."""
 
@@ -40,6 +43,31 @@ def read_outlines(
         (int(place // 4), np.roll(outline, int(place % 4), axis=0))
         for place, outline in zip(best, outlines, strict=True)
     ]
+
+
+def dark_inside(grey: NDArray[np.uint8], outlines: Float, family: str, least_margin: float) -> Float:
+    """Those of the outlines (k, 4, 2) that are darker just inside than just outside, by a few places of each side: most
+    of a reef's are passed over so before their cells are looked at. grey: (h, w)."""
+    if not len(outlines):
+        return outlines
+    places = np.rint(_beside(family) @ outlines).astype(np.intp)
+    rows, columns = grey.shape
+    x, y = places[..., 0].clip(0, columns - 1), places[..., 1].clip(0, rows - 1)
+    levels = grey[y, x].reshape(len(outlines), 2, -1).mean(axis=2)
+    return outlines[levels[:, 1] - levels[:, 0] >= 2.0 * least_margin]
+
+
+@cache
+def _beside(family: str) -> Float:
+    """Places along the four sides, the middle of a cell inside and then as far outside, as weights of the corners,
+    (2 × 4 × len(ALONG), 4)."""
+    half = 0.5 / (dictionary(family).markerSize + 2)
+    along, found = np.array(ALONG), []
+    for share in (half, -half):
+        low, high = np.full_like(along, share), np.full_like(along, 1.0 - share)
+        u, v = np.concatenate([along, along, low, high]), np.concatenate([low, high, along, along])
+        found.append(np.stack([(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v], axis=-1))
+    return np.concatenate(found).astype(np.float32)
 
 
 def framed(grey: NDArray[np.uint8], outlines: Float, count: int, least_margin: float) -> Float:

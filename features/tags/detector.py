@@ -86,7 +86,7 @@ class ArucoTags:
         parameters.adaptiveThreshWinSizeMin, parameters.adaptiveThreshWinSizeMax = windows
         if step is not None:
             parameters.adaptiveThreshWinSizeStep = step
-        # At the border of the picture the white edge of a card may be all there is of it.
+        # A card may be held so that its white edge is cut by the picture's.
         parameters.minDistanceToBorder = 0
         parameters.minMarkerDistanceRate = GROUP_RATE
         parameters.minMarkerPerimeterRate = self._settings.least_perimeter

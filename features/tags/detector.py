@@ -5,7 +5,7 @@ from typing import Final, Literal, Protocol
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lightgesture.features.tags.apriltag import AprilTags
 from lightgesture.features.tags.following import follow_corners
@@ -56,7 +56,8 @@ def make_detector(
 
 
 class ArucoTags:
-    """OpenCV's detector over the whole picture, and where a tag was lost once more, enlarged and less strict.
+    """OpenCV's detector over the whole picture, and where a tag was lost once more, enlarged and less strict. Outlines
+    that it finds and cannot name are read by their cells.
 
     It remembers where the tags of a stream were; another stream needs another one.
     """
@@ -182,7 +183,7 @@ class ArucoTags:
         return [tag for tag in tags if tag is not None]
 
 
-def _stacked(outlines: Sequence[Float]) -> Float:
+def _stacked(outlines: Sequence[ArrayLike]) -> Float:
     """Outlines as OpenCV gives them, each (1, 4, 2), as (k, 4, 2)."""
     return np.array(outlines, np.float32).reshape(-1, 4, 2)
 

@@ -54,7 +54,8 @@ def dark_inside(grey: NDArray[np.uint8], outlines: Float, family: str, least_mar
     rows, columns = grey.shape
     x, y = places[..., 0].clip(0, columns - 1), places[..., 1].clip(0, rows - 1)
     levels = grey[y, x].reshape(len(outlines), 2, -1).mean(axis=2)
-    return outlines[levels[:, 1] - levels[:, 0] >= 2.0 * least_margin]
+    is_darker = levels[:, 1] - levels[:, 0] >= 2.0 * least_margin
+    return np.asarray(outlines[is_darker], np.float32)
 
 
 @cache
@@ -76,7 +77,8 @@ def framed(grey: NDArray[np.uint8], outlines: Float, count: int, least_margin: f
     ring, edge = _ring(values[:, 1:-1, 1:-1]), np.median(_ring(values), axis=1)
     middle = 0.5 * (ring.mean(axis=1) + edge)
     is_black = (ring < middle[:, None]).mean(axis=1) >= RING_SHARE
-    return outlines[is_black & (edge - ring.mean(axis=1) >= 2.0 * least_margin)]
+    is_clear = edge - ring.mean(axis=1) >= 2.0 * least_margin
+    return np.asarray(outlines[is_black & is_clear], np.float32)
 
 
 def _ring(cells: Float) -> Float:

@@ -249,12 +249,15 @@ class Segmenter:
         return np.asarray(curve - (drift - drift[0]))
 
     def _extent(self, track: deque[tuple[float, Tag]], since_s: float) -> float:
-        """How far a tag went since then, sides."""
-        recent = [tag for at_s, tag in track if at_s >= since_s]
+        """How far a tag went since then, sides; since it was last seen before, if it was not seen for half of that:
+        what is not seen does not rest."""
+        recent = [(at_s, tag) for at_s, tag in track if at_s >= since_s]
+        if len(recent) < len(track) and (not recent or recent[0][0] - since_s > 0.5 * self.settings.window_s):
+            recent.insert(0, track[-len(recent) - 1])
         if len(recent) < 2:
             return 0.0
-        points = np.array([tag.centre for tag in recent])
-        return float(np.hypot(*np.ptp(points, axis=0))) / max(recent[-1].side, 1.0)
+        points = np.array([tag.centre for _, tag in recent])
+        return float(np.hypot(*np.ptp(points, axis=0))) / max(recent[-1][1].side, 1.0)
 
     def _drop_before(self, time_s: float) -> None:
         for track in self._tracks:

@@ -1,17 +1,18 @@
 """Finds the tags of a picture: OpenCV's own detector, looked after where it misses, or AprilTag's for murky water."""
 
-import threading
-from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cache
-from typing import Any, Final, Literal, Protocol
+from collections.abc import Iterable, Sequence
+from typing import Final, Literal, Protocol
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from lightgesture.features.tags.apriltag import AprilTags
 from lightgesture.features.tags.following import follow_corners
-from lightgesture.features.tags.tag import Tag, cells_of, dictionary, examine
+from lightgesture.features.tags.outlines import dark_inside, read_outlines
+from lightgesture.features.tags.sampling import OUTLINE_PX, grown
+from lightgesture.features.tags.settings import TagSettings
+from lightgesture.features.tags.tag import Tag, cells_of, checked, dictionary
 from lightgesture.features.types import Float
 
 Grey = NDArray[np.uint8]
@@ -20,43 +21,13 @@ Grey = NDArray[np.uint8]
 DetectorName = Literal["aruco", "apriltag"]
 """OpenCV's detector, or AprilTag's own (`pupil-apriltags`)."""
 
-APRILTAG_FAMILIES: Final = {"25h9": "tag25h9", "36h11": "tag36h11"}
-"""Families that AprilTag's own library reads, by its names."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TagSettings:
-    """What tells a tag from anything else, and what is done for those that are hard to see."""
-
-    least_margin: float = 3.0
-    """Least half difference between white and black cells, grey levels, 0 to 127. Less: more is read in murk, and noise
-    may be taken for a tag."""
-    least_agreement: float = 0.9
-    """Least share of cells that are as they should be, 0 to 1. Less: more is read behind fingers and bubbles; the codes
-    of 36h11 differ in 11 of 64 cells, so that 0.9 is far from any other."""
-    threshold: int = 5
-    """How much darker than its surroundings a pixel is to be black, grey levels. Less: more is read in murk and in
-    blur, and everything takes longer, for there are more outlines."""
-    near_threshold: int = 3
-    """The same where a tag was lost."""
-    follow_s: float = 1.0
-    """How long a tag that is no longer found is looked for where it was last, seconds. More: takes longer."""
-    follow_reach: float = 1.0
-    """How far round its last place, in sides of the tag. More: quicker cards are followed, which takes longer."""
-    small_side: float = 48.0
-    """Side below which a tag that is followed is looked at enlarged, pixels."""
-    least_perimeter: float = 0.05
-    """Least perimeter of a tag as a share of the picture's longer side: 8 pixels a side at 640. OpenCV's own is 0.03.
-    Less: reefs, sand and leaves take longer."""
-    busy: float = 0.06
-    """Share of neighbouring pixels that differ by more than `threshold` from which on a picture is busy, 0 to 1. Then
-    one window of WINDOWS_PX is tried a frame, in turn, unless a tag was lost: reefs have thousands of outlines. Less:
-    more pictures are quick, and a tag that only one window finds is found a frame or two later."""
-
-
 WINDOWS_PX: Final = (15, 7, 23)
 """Windows of the thresholds, pixels, the one that finds most first. OpenCV's own, 3, 13 and 23, lose tags whose cells
 are 5 pixels wide where the card is no brighter than what is behind it."""
+
+GROUP_RATE: Final = 0.03
+"""How near the corners of two outlines are for the two to be one, as a share of the perimeter. By OpenCV's own, 0.125,
+a tag is one with its white edge, and gone with it where it cannot be named; an edge of a cell is 0.044 away."""
 
 ROWS_STEP: Final = 8
 """How busy a picture is, one row of so many tells."""
@@ -84,17 +55,9 @@ def make_detector(
     return AprilTags(family, settings) if name == "apriltag" else ArucoTags(family, settings)
 
 
-def checked(grey: Grey, family: str, number: int, corners: Float, settings: TagSettings) -> Tag | None:
-    """The tag with this id and these corners, None where its cells do not bear it out."""
-    corners = np.ascontiguousarray(corners, np.float32).reshape(4, 2)
-    margin, agreement = examine(grey, corners, cells_of(family, number))
-    if margin < settings.least_margin or agreement < settings.least_agreement:
-        return None
-    return Tag(number, corners, round(margin, 1), round(agreement, 3))
-
-
 class ArucoTags:
-    """OpenCV's detector over the whole picture, and where a tag was lost once more, enlarged and less strict.
+    """OpenCV's detector over the whole picture, and where a tag was lost once more, enlarged and less strict. Outlines
+    that it finds and cannot name are read by their cells.
 
     It remembers where the tags of a stream were; another stream needs another one.
     """
@@ -124,19 +87,30 @@ class ArucoTags:
         parameters.adaptiveThreshWinSizeMin, parameters.adaptiveThreshWinSizeMax = windows
         if step is not None:
             parameters.adaptiveThreshWinSizeStep = step
-        # The white edge of a card and its tag are one candidate to OpenCV, and else gone with the edge.
+        # A card may be held so that its white edge is cut by the picture's.
         parameters.minDistanceToBorder = 0
+        parameters.minMarkerDistanceRate = GROUP_RATE
         parameters.minMarkerPerimeterRate = self._settings.least_perimeter
         return parameters
 
     def process(self, grey: Grey, time_s: float) -> tuple[Tag, ...]:
         """See TagDetector."""
-        found = self._detect(self._choose(grey), grey, grey, 1.0, (0, 0))
+        named, read = self._detect(self._choose(grey), grey, grey, 1.0, (0, 0))
+        found = _distinct([*named, *(tag for tag in read if self._is_sure(tag, time_s))])
         found += self._follow(grey, time_s, {tag.id for tag in found})
         for tag in found:
             self._last[tag.id] = tag, time_s
         self._before, self._before_s = grey, time_s
         return tuple(sorted(found, key=lambda tag: -tag.side))
+
+    def _is_sure(self, tag: Tag, time_s: float) -> bool:
+        """Whether a tag that only its cells tell is all but flawless, or where it was shortly before."""
+        if tag.agreement >= self._settings.alone_agreement:
+            return True
+        last, last_s = self._last.get(tag.id, (None, 0.0))
+        if last is None or not 0.0 <= time_s - last_s <= self._settings.follow_s:
+            return False
+        return _apart(tag, last) <= (1.0 + self._settings.follow_reach) * last.side
 
     def _choose(self, grey: Grey) -> cv2.aruco.ArucoDetector:
         """All windows; one of them in turn where the picture is busy and no tag was lost that is still looked for."""
@@ -163,8 +137,9 @@ class ArucoTags:
         if min(window.shape) == 0:
             return None
         scale = 2.0 if tag.side < self._settings.small_side else 1.0
-        near = self._detect(self._near, window, grey, scale, corner)
-        return next((other for other in near if other.id == tag.id), None)
+        named, read = self._detect(self._near, window, grey, scale, corner)
+        own = [other for other in (*named, *read) if other.id == tag.id]
+        return max(own, key=lambda other: other.agreement, default=None)
 
     def _flow(self, grey: Grey, tag: Tag, last_s: float) -> Tag | None:
         """A tag of the frame before by how its cells moved."""
@@ -181,59 +156,50 @@ class ArucoTags:
         grey: Grey,
         scale: float,
         corner: tuple[int, int],
-    ) -> list[Tag]:
-        """Tags of a window of the picture, whose upper left corner is at `corner`, looked at `scale` times as large."""
+    ) -> tuple[list[Tag], list[Tag]]:
+        """Tags of a window of the picture, whose upper left corner is at `corner`, looked at `scale` times as large:
+        those that OpenCV names, and those whose outline it found and that only their cells tell."""
         if scale != 1.0:
             larger = cv2.resize(window, None, fx=scale, fy=scale, interpolation=cv2.INTER_CUBIC)
             window = np.asarray(larger, np.uint8)
-        corners, ids, _ = detector.detectMarkers(window)
-        if ids is None:
-            return []
-        return _kept(
-            [
-                checked(
-                    grey,
-                    self._family,
-                    int(number),
-                    (outline.reshape(4, 2) + np.float32(0.5)) / np.float32(scale)
-                    - np.float32(0.5)
-                    + np.array(corner, np.float32),
-                    self._settings,
-                )
-                for number, outline in zip(ids.ravel(), corners, strict=True)
-            ]
-        )
+        corners, ids, others = detector.detectMarkers(window)
+        numbers = [] if ids is None else [int(number) for number in ids.ravel()]
+        named = zip(numbers, self._placed(_stacked(corners), scale, corner), strict=True)
+        margin = self._settings.least_margin
+        rejected = dark_inside(window, _stacked(others), self._family, margin)
+        read = read_outlines(grey, self._placed(rejected, scale, corner), self._family, margin)
+        return self._checked(grey, named), self._checked(grey, read)
+
+    def _placed(self, outlines: Float, scale: float, corner: tuple[int, int]) -> Float:
+        """Outlines of a window, (k, 4, 2), where they are in the picture."""
+        if not len(outlines):
+            return outlines
+        half, origin = np.float32(0.5), np.array(corner, np.float32)
+        return grown((outlines + half) / np.float32(scale) - half + origin, OUTLINE_PX / scale)
+
+    def _checked(self, grey: Grey, read: Iterable[tuple[int, Float]]) -> list[Tag]:
+        """Those whose cells bear them out."""
+        tags = (checked(grey, self._family, number, corners, self._settings) for number, corners in read)
+        return [tag for tag in tags if tag is not None]
 
 
-class AprilTags:
-    """AprilTag's own detector, by `pupil-apriltags`: slower, and reads more where water blurs (the extra `tags`)."""
-
-    def __init__(self, family: str, settings: TagSettings) -> None:
-        if family not in APRILTAG_FAMILIES:
-            known = ", ".join(APRILTAG_FAMILIES)
-            raise ValueError(f"'{family}' is no family that apriltag reads; use one of {known}, or aruco")
-        self._family, self._settings = family, settings
-        self._detector, self._lock = _apriltag(APRILTAG_FAMILIES[family])
-
-    def process(self, grey: Grey, time_s: float) -> tuple[Tag, ...]:  # noqa: ARG002 - as TagDetector has it
-        """See TagDetector; each picture is looked at on its own."""
-        with self._lock:
-            seen = self._detector.detect(np.ascontiguousarray(grey))
-        found = [
-            # It has the tags of OpenCV upside down, goes round the other way, and counts from the corners of pixels.
-            checked(grey, self._family, int(one.tag_id), one.corners[[1, 0, 3, 2]] - 0.5, self._settings)
-            for one in seen
-        ]
-        return tuple(sorted(_kept(found), key=lambda tag: -tag.side))
+def _stacked(outlines: Sequence[ArrayLike]) -> Float:
+    """Outlines as OpenCV gives them, each (1, 4, 2), as (k, 4, 2)."""
+    return np.array(outlines, np.float32).reshape(-1, 4, 2)
 
 
-@cache
-def _apriltag(families: str) -> tuple[Any, threading.Lock]:
-    """The package's detector, one for the whole process and never given back, and what keeps threads apart: where the
-    package frees one it may free memory twice, which ends the process."""
-    from pupil_apriltags import Detector
+def _apart(one: Tag, other: Tag) -> float:
+    """Distance of the centres, pixels."""
+    return float(np.hypot(*np.subtract(one.centre, other.centre)))
 
-    return Detector(families=families, nthreads=1, quad_decimate=1.0), threading.Lock()
+
+def _distinct(tags: Iterable[Tag]) -> list[Tag]:
+    """The tags without those that are one seen twice; the first counts."""
+    found: list[Tag] = []
+    for tag in tags:
+        if all(tag.id != other.id or _apart(tag, other) > 0.5 * other.side for other in found):
+            found.append(tag)
+    return found
 
 
 def busyness(grey: Grey, threshold: int) -> float:
@@ -243,10 +209,6 @@ def busyness(grey: Grey, threshold: int) -> float:
         return 0.0
     apart = cv2.absdiff(rows[:, 2:], rows[:, :-2])
     return float(np.count_nonzero(apart > threshold) / apart.size)
-
-
-def _kept(tags: Sequence[Tag | None]) -> list[Tag]:
-    return [tag for tag in tags if tag is not None]
 
 
 def _window(picture: Grey, tag: Tag, reach: float) -> tuple[Grey, tuple[int, int]]:

@@ -8,6 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.tags.sampling import PLACES, cell_values, sharpened
+from lightgesture.features.tags.settings import TagSettings
 from lightgesture.features.types import Float
 
 DICTIONARIES: Final = {
@@ -16,9 +18,6 @@ DICTIONARIES: Final = {
     "36h11": cv2.aruco.DICT_APRILTAG_36H11,
 }
 """Families of tags that are read."""
-
-CELL_PX: Final = 5
-"""Pixels of a cell in the upright picture of a tag; its middle 3 × 3 are looked at."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,18 +67,22 @@ def cells_of(family: str, number: int) -> NDArray[np.bool_]:
 def examine(grey: NDArray[np.uint8], corners: Float, cells: NDArray[np.bool_]) -> tuple[float, float]:
     """Margin and agreement of a tag, see `Tag`, from its own cells in the grey picture (h, w).
 
-    The middle between the mean of what should be white and the mean of what should be black divides the two.
+    The middle between the mean of what should be white and the mean of what should be black divides the two, after
+    blur was taken back.
     """
-    count = len(cells)
-    edge = count * CELL_PX
-    target = np.array([[0, 0], [edge, 0], [edge, edge], [0, edge]], np.float32)
-    # Pixel centres lie at whole numbers, so that the upright picture is moved by half of a pixel.
-    to_source = cv2.getPerspectiveTransform(target - np.float32(0.5), corners)
-    upright = cv2.warpPerspective(
-        grey, to_source, (edge, edge), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    )
-    inner = slice(1, CELL_PX - 1)
-    values = upright.reshape(count, CELL_PX, count, CELL_PX)[:, inner, :, inner].mean(axis=(1, 3))
-    white, black = float(values[cells].mean()), float(values[~cells].mean())
-    is_right = (values > 0.5 * (white + black)) == cells
-    return 0.5 * (white - black), float(is_right.mean())
+    (values,) = outlines = cell_values(grey, corners[None], len(cells), PLACES)
+    inner, (clear,) = values[1:-1, 1:-1], sharpened(outlines)
+    margin = 0.5 * float(inner[cells].mean() - inner[~cells].mean())
+    middle = 0.5 * float(clear[cells].mean() + clear[~cells].mean())
+    return margin, float(((clear > middle) == cells).mean())
+
+
+def checked(
+    grey: NDArray[np.uint8], family: str, number: int, corners: Float, settings: TagSettings
+) -> Tag | None:
+    """The tag with this id and these corners, None where its cells do not bear it out."""
+    corners = np.ascontiguousarray(corners, np.float32).reshape(4, 2)
+    margin, agreement = examine(grey, corners, cells_of(family, number))
+    if margin < settings.least_margin or agreement < settings.least_agreement:
+        return None
+    return Tag(number, corners, round(margin, 1), round(agreement, 3))

@@ -255,6 +255,17 @@ class TestSegments:
         (motion,) = motions(moments)
         assert names(motion) == ("up", None)
 
+    def test_a_tag_that_is_missed_does_not_rest(self):
+        segments, moments = Segmenter(), []
+        circle = drawn(SHAPES["clockwise"][0], 2.0, 90.0)
+        end = FPS + len(circle)
+        for index, offset in enumerate(np.vstack([REST, circle, REST])):
+            right = tag(51, RIGHT + offset) if index < FPS + 4 or index >= end or index % 5 == 0 else None
+            moments.append(segments.process(tag(50, LEFT), right, index / FPS))
+        assert {moment.phase for moment in moments[FPS + 4 : end]} == {"moving"}
+        (motion,) = motions(moments)
+        assert names(motion) == (None, "clockwise")
+
     @pytest.mark.parametrize(
         ("options", "reason"), [({"angle": 180.0}, "turned"), ({"apart": -100}, "swapped")]
     )

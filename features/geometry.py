@@ -11,13 +11,25 @@ from lightgesture.features.types import Box
 
 def pairwise_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float64]:
     """Intersection over union of every box of `first` (n, 4) with every one of `second` (m, 4)."""
-    a = np.asarray(first, np.float64).reshape(-1, 4)[:, None, :]
-    b = np.asarray(second, np.float64).reshape(-1, 4)[None, :, :]
-    low = np.maximum(a[..., :2], b[..., :2])
-    high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
-    overlap = np.clip(high - low, 0.0, None).prod(axis=-1)
-    union = a[..., 2:].prod(axis=-1) + b[..., 2:].prod(axis=-1) - overlap
-    return overlap / np.maximum(union, 1e-9)  # type: ignore[no-any-return]
+    a = np.asarray(first, np.float64).reshape(-1, 4).T[:, :, None]
+    b = np.asarray(second, np.float64).reshape(-1, 4).T[:, None, :]
+    return _overlaps(a, b)
+
+
+def matched_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float64]:
+    """Intersection over union of each box of `first` (n, 4) with the one of `second` (n, 4) in its place."""
+    return _overlaps(np.asarray(first, np.float64).T, np.asarray(second, np.float64).T)
+
+
+def _overlaps(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of boxes by coordinate: (4, n, 1) and (4, 1, m), or (4, n) both."""
+    both = np.minimum(a[:2] + a[2:], b[:2] + b[2:])
+    both -= np.maximum(a[:2], b[:2])
+    np.maximum(both, 0.0, out=both)
+    overlap = both[0] * both[1]
+    union = a[2] * a[3] + b[2] * b[3]
+    union -= overlap
+    return np.asarray(overlap / np.maximum(union, 1e-9), np.float64)
 
 
 def box_iou(one: Box, other: Box) -> float:

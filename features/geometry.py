@@ -58,11 +58,15 @@ def keep_distinct(same: NDArray[np.bool_], order: Iterable[int], most: int) -> l
 
 def scale_boxes(boxes: NDArray[Any], scale: tuple[float, float], size: tuple[int, int]) -> list[Box]:
     """Boxes of the working picture, (n, 4), in source pixels, kept inside `size` (width, height)."""
-    boxes = boxes.astype(np.float64)
-    low = np.rint(boxes[:, :2] * scale).clip(0, np.array(size) - 1)
-    high = np.rint((boxes[:, :2] + boxes[:, 2:]) * scale).clip(None, size)
-    sides = np.maximum(high - low, 1.0)
-    return list(zip(*low.T.astype(int).tolist(), *sides.T.astype(int).tolist(), strict=True))
+    across, down = scale
+    found = []
+    # A handful of boxes: the calls on arrays would take longer than the numbers.
+    for x, y, width, height in boxes.astype(np.float64).tolist():
+        left = min(max(round(x * across), 0), size[0] - 1)
+        top = min(max(round(y * down), 0), size[1] - 1)
+        right, bottom = min(round((x + width) * across), size[0]), min(round((y + height) * down), size[1])
+        found.append((left, top, max(right - left, 1), max(bottom - top, 1)))
+    return found
 
 
 def whole_box(place: tuple[float, float, float, float], size: tuple[int, int]) -> Box:

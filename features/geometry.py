@@ -11,13 +11,25 @@ from lightgesture.features.types import Box
 
 def pairwise_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float64]:
     """Intersection over union of every box of `first` (n, 4) with every one of `second` (m, 4)."""
-    a = np.asarray(first, np.float64).reshape(-1, 4)[:, None, :]
-    b = np.asarray(second, np.float64).reshape(-1, 4)[None, :, :]
-    low = np.maximum(a[..., :2], b[..., :2])
-    high = np.minimum(a[..., :2] + a[..., 2:], b[..., :2] + b[..., 2:])
-    overlap = np.clip(high - low, 0.0, None).prod(axis=-1)
-    union = a[..., 2:].prod(axis=-1) + b[..., 2:].prod(axis=-1) - overlap
-    return overlap / np.maximum(union, 1e-9)  # type: ignore[no-any-return]
+    a = np.asarray(first, np.float64).reshape(-1, 4).T[:, :, None]
+    b = np.asarray(second, np.float64).reshape(-1, 4).T[:, None, :]
+    return _overlaps(a, b)
+
+
+def matched_iou(first: NDArray[Any], second: NDArray[Any]) -> NDArray[np.float64]:
+    """Intersection over union of each box of `first` (n, 4) with the one of `second` (n, 4) in its place."""
+    return _overlaps(np.asarray(first, np.float64).T, np.asarray(second, np.float64).T)
+
+
+def _overlaps(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of boxes by coordinate: (4, n, 1) and (4, 1, m), or (4, n) both."""
+    both = np.minimum(a[:2] + a[2:], b[:2] + b[2:])
+    both -= np.maximum(a[:2], b[:2])
+    np.maximum(both, 0.0, out=both)
+    overlap = both[0] * both[1]
+    union = a[2] * a[3] + b[2] * b[3]
+    union -= overlap
+    return np.asarray(overlap / np.maximum(union, 1e-9), np.float64)
 
 
 def box_iou(one: Box, other: Box) -> float:
@@ -46,11 +58,15 @@ def keep_distinct(same: NDArray[np.bool_], order: Iterable[int], most: int) -> l
 
 def scale_boxes(boxes: NDArray[Any], scale: tuple[float, float], size: tuple[int, int]) -> list[Box]:
     """Boxes of the working picture, (n, 4), in source pixels, kept inside `size` (width, height)."""
-    boxes = boxes.astype(np.float64)
-    low = np.rint(boxes[:, :2] * scale).clip(0, np.array(size) - 1)
-    high = np.rint((boxes[:, :2] + boxes[:, 2:]) * scale).clip(None, size)
-    sides = np.maximum(high - low, 1.0)
-    return list(zip(*low.T.astype(int).tolist(), *sides.T.astype(int).tolist(), strict=True))
+    across, down = scale
+    found = []
+    # A handful of boxes: the calls on arrays would take longer than the numbers.
+    for x, y, width, height in boxes.astype(np.float64).tolist():
+        left = min(max(round(x * across), 0), size[0] - 1)
+        top = min(max(round(y * down), 0), size[1] - 1)
+        right, bottom = min(round((x + width) * across), size[0]), min(round((y + height) * down), size[1])
+        found.append((left, top, max(right - left, 1), max(bottom - top, 1)))
+    return found
 
 
 def whole_box(place: tuple[float, float, float, float], size: tuple[int, int]) -> Box:

@@ -94,12 +94,11 @@ def luma_tables(pictures: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], Float]:
 
 def _tables(shares: NDArray[np.floating]) -> Float:
     """float32 (n, 256): square roots taken to mean 0 and deviation 1, given the share of each value, (n, 256)."""
-    tables = np.empty(shares.shape, np.float32)
-    for table, share in zip(tables, shares, strict=True):
-        mean = float(share @ _ROOTS)
-        deviation = max(float(share @ _SQUARES) - mean * mean, 0.0) ** 0.5
-        np.clip((_ROOTS - mean) / (deviation + EVENNESS), -LARGEST, LARGEST, out=table, casting="same_kind")
-    return tables
+    means = np.array([float(share @ _ROOTS) for share in shares])[:, None]
+    squares = np.array([float(share @ _SQUARES) for share in shares])[:, None]
+    deviations = np.sqrt(np.maximum(squares - means * means, 0.0))
+    tables = (_ROOTS - means) / (deviations + EVENNESS)
+    return np.minimum(np.maximum(tables, -LARGEST), LARGEST).astype(np.float32)
 
 
 def patch_levels(patches: NDArray[np.uint8], quantisation: Quantisation) -> NDArray[np.int8]:

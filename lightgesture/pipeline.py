@@ -7,18 +7,16 @@ from copy import copy
 from dataclasses import replace
 from datetime import datetime
 from functools import partial
-from typing import Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from numpy.typing import NDArray
 
-from lightgesture.cards import FrontEndName, language_of_cards, make_card_reader
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.profile import load_profile
-from lightgesture.features.tags.detector import DetectorName
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd, StageClock
-from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs, load_grammar
+from lightgesture.fsm import Decoder, Event, Grammar, Instruction, Rejected, Signs, load_grammar
 from lightgesture.fsm.language.settings import SENTENCE, Rule
 from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
 from lightgesture.hands.memory import ReadingMemory, memory_for_hold, memory_for_sentences
@@ -26,6 +24,10 @@ from lightgesture.hands.pictures import PictureSink, with_text
 from lightgesture.models import check_classes, load_classifier
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
+
+if TYPE_CHECKING:
+    from lightgesture.cards import FrontEndName
+    from lightgesture.features.tags.detector import DetectorName
 
 HANDS: Final = "hands"
 """The front end that reads bare hands, the default."""
@@ -90,14 +92,14 @@ class Pipeline:
         front: FrontEnd | None = None,
         decoder: Decoder | None = None,
         *,
-        front_end: FrontEndName = HANDS,
+        front_end: "FrontEndName" = HANDS,
         model: str | os.PathLike[str] = DEFAULT,
         selector: SelectorName = "learned",
         profile: str | os.PathLike[str] | None = None,
         mirrored: bool = False,
         rotate: int = 0,
         threshold: float | None = None,
-        tag_detector: DetectorName = "aruco",
+        tag_detector: "DetectorName" = "aruco",
         shapes: str | os.PathLike[str] | None = None,
         rule: Rule | None = None,
         hold: int | None = None,
@@ -131,9 +133,8 @@ class Pipeline:
             }
             _refuse("another decoder", {name: value is not None for name, value in of_decoder.items()})
         if decoder is None:
-            language = load_grammar(grammar)
             decoder = Decoder(
-                language if front_end == HANDS else language_of_cards(language, front_end),
+                _language(grammar, front_end),
                 rule=rule,
                 hold=hold,
                 hold_seconds=hold_seconds,
@@ -143,6 +144,8 @@ class Pipeline:
         elif source is not None:
             decoder = decoder.for_stream(source)
         if front is None and front_end != HANDS:
+            from lightgesture.cards import make_card_reader
+
             front = make_card_reader(
                 decoder.grammar, front_end, detector=tag_detector, shapes=shapes, mirrored=mirrored
             )
@@ -276,6 +279,17 @@ class Pipeline:
         if self.start_utc is None:
             return list(events)
         return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
+
+
+def _language(file: str | os.PathLike[str] | None, front_end: "FrontEndName") -> Grammar:
+    """The grammar of a file, None for the bundled one, as the front end needs it."""
+    language = load_grammar(file)
+    if front_end == HANDS:
+        return language
+    # Who reads hands need not wait for what reads cards.
+    from lightgesture.cards import language_of_cards
+
+    return language_of_cards(language, front_end)
 
 
 def _memory(rule: Rule, hold_frames: int | None, hold_seconds: float | None) -> ReadingMemory:

@@ -21,13 +21,14 @@ class LastFrame:
     def __init__(self) -> None:
         self._frame: Image | None = None
         self._rows: Image | None = None
+        self._start = 0
 
     def equals(self, frame: Image) -> bool:
         """Whether a frame, uint8 (height, width, 3), is the same as the one before, whose place it takes."""
         rows = frame[:: max(len(frame) // ROWS, 1)].copy()
-        before, kept = self._frame, self._rows
-        self._frame, self._rows = frame, rows
-        if before is None or kept is None or before.shape != frame.shape or _start(before) == _start(frame):
+        before, kept, before_start = self._frame, self._rows, self._start
+        self._frame, self._rows, self._start = frame, rows, _start(frame)
+        if before is None or kept is None or before.shape != frame.shape or before_start == self._start:
             return False
         # The middle row alone tells nearly every frame of a camera from the one before.
         middle = len(rows) // 2

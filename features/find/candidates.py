@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from lightgesture.features.find.locator import Peaks
 from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.trees import Trees, evaluate
-from lightgesture.features.geometry import keep_distinct, pairwise_iou
+from lightgesture.features.geometry import keep_distinct, matched_iou, pairwise_iou
 from lightgesture.features.types import Float
 
 Rows = NDArray[np.float64]
@@ -56,7 +56,7 @@ def best_distinct(overlap: NDArray[np.float64], scores: Float) -> list[int]:
 
 def logit(probabilities: Float) -> Float:
     """log(p / (1 - p)), kept finite."""
-    p = np.clip(probabilities, 1e-4, 1.0 - 1e-4)
+    p = np.minimum(np.maximum(probabilities, 1e-4), 1.0 - 1e-4)
     return np.asarray(np.log(p / (1.0 - p)), np.float32)
 
 
@@ -66,30 +66,30 @@ def describe_places(peaks: Peaks, refined: Refined, size: tuple[int, int]) -> Fl
     if not count:
         return np.zeros((0, PLACE_COLUMNS), np.float32)
     boxes = refined.boxes
-    own = pairwise_iou(peaks.boxes, boxes).diagonal()
-    sides = np.sqrt(boxes[:, 2] * boxes[:, 3])
-    centres = boxes[:, :2] + boxes[:, 2:] / 2
-    others = pairwise_iou(boxes, boxes) - np.eye(count)
-    to_face = np.full((count, 2), FAR)
+    wide, tall = boxes[:, 2], boxes[:, 3]
+    low, high = boxes[:, :2], boxes[:, :2] + boxes[:, 2:]
+    sides = np.sqrt(wide * tall)
+    centres = low + boxes[:, 2:] / 2
+    others = pairwise_iou(boxes, boxes)
+    others.ravel()[:: count + 1] -= 1.0
+    inside = np.maximum(np.minimum(high, size) - np.maximum(low, 0), 0)
+    numbers = np.empty((count, PLACE_COLUMNS), np.float32)
+    # Written in place: laying a dozen short columns side by side takes longer than making them.
+    numbers[:, 0] = logit(peaks.heat)
+    numbers[:, 1] = refined.hand
+    numbers[:, 2] = matched_iou(peaks.boxes, boxes)
+    numbers[:, 3] = np.log(sides / min(size))
+    numbers[:, 4] = np.log(wide / tall)
+    numbers[:, 5] = np.log(sides / np.sqrt(peaks.boxes[:, 2] * peaks.boxes[:, 3]))
+    numbers[:, 6:8] = centres / np.array(size)
+    numbers[:, 8:10] = FAR
     if peaks.face is not None:
-        to_face = np.abs(centres - np.array(peaks.face)) / sides[:, None]
-    inside = np.clip(np.minimum(boxes[:, :2] + boxes[:, 2:], size) - np.maximum(boxes[:, :2], 0), 0, None)
-    return np.column_stack(
-        [
-            logit(peaks.heat),
-            refined.hand,
-            own,
-            np.log(sides / min(size)),
-            np.log(boxes[:, 2] / boxes[:, 3]),
-            np.log(sides / np.sqrt(peaks.boxes[:, 2] * peaks.boxes[:, 3])),
-            centres / np.array(size),
-            to_face,
-            others.max(axis=1),
-            inside.prod(axis=1) / (boxes[:, 2] * boxes[:, 3]),
-            np.arange(count),
-            np.full(count, count),
-        ]
-    ).astype(np.float32)
+        numbers[:, 8:10] = np.abs(centres - np.array(peaks.face)) / sides[:, None]
+    numbers[:, 10] = others.max(axis=1)
+    numbers[:, 11] = inside[:, 0] * inside[:, 1] / (wide * tall)
+    numbers[:, 12] = np.arange(count)
+    numbers[:, 13] = count
+    return numbers
 
 
 def candidate_rows(
@@ -117,33 +117,36 @@ def pair_numbers(
     a, b = (candidates[list(places)] for places in zip(*pairs, strict=True))
     swapped = a[:, 0] + a[:, 2] / 2 > b[:, 0] + b[:, 2] / 2
     a[swapped], b[swapped] = b[swapped], a[swapped]
+    return pairs, _numbers_of(a, b, size, face)
+
+
+def _numbers_of(a: Rows, b: Rows, size: tuple[int, int], face: Point | None) -> Float:
+    """float32 (n, PAIR_COLUMNS) of n pairs, `a` being the left ones."""
     sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
     unit = np.sqrt(sides_a * sides_b)
     centres_a, centres_b = a[:, :2] + a[:, 2:4] / 2, b[:, :2] + b[:, 2:4] / 2
     apart = (centres_b - centres_a) / unit[:, None]
     middle = (centres_a + centres_b) / 2
     contrast = np.log((a[:, 6:] + DARKEST) / (b[:, 6:] + DARKEST))
-    to_face = np.full((len(a), 2), FAR) if face is None else (np.array(face) - middle) / unit[:, None]
-    numbers = np.column_stack(
-        [
-            np.minimum(a[:, 4], b[:, 4]),
-            np.maximum(a[:, 4], b[:, 4]),
-            np.abs(np.log(sides_a / sides_b)),
-            np.abs(np.log(a[:, 2:4] / b[:, 2:4])),
-            apart[:, 0],
-            np.abs(apart[:, 1]),
-            (b[:, 0] - a[:, 0] - a[:, 2]) / unit,
-            np.abs((a[:, 1] + a[:, 3]) - (b[:, 1] + b[:, 3])) / unit,
-            middle / np.array(size),
-            np.log(unit / min(size)),
-            np.abs(contrast.mean(axis=1)),
-            np.abs(contrast[:, 2] - contrast[:, 1]),
-            np.abs(a[:, 5] - b[:, 5]),
-            np.abs(to_face[:, 0]),
-            to_face[:, 1],
-        ]
-    )
-    return pairs, numbers.astype(np.float32)
+    numbers = np.empty((len(a), PAIR_COLUMNS), np.float32)
+    numbers[:, 0] = np.minimum(a[:, 4], b[:, 4])
+    numbers[:, 1] = np.maximum(a[:, 4], b[:, 4])
+    numbers[:, 2] = np.abs(np.log(sides_a / sides_b))
+    numbers[:, 3:5] = np.abs(np.log(a[:, 2:4] / b[:, 2:4]))
+    numbers[:, 5] = apart[:, 0]
+    numbers[:, 6] = np.abs(apart[:, 1])
+    numbers[:, 7] = (b[:, 0] - a[:, 0] - a[:, 2]) / unit
+    numbers[:, 8] = np.abs((a[:, 1] + a[:, 3]) - (b[:, 1] + b[:, 3])) / unit
+    numbers[:, 9:11] = middle / np.array(size)
+    numbers[:, 11] = np.log(unit / min(size))
+    numbers[:, 12] = np.abs(contrast.mean(axis=1))
+    numbers[:, 13] = np.abs(contrast[:, 2] - contrast[:, 1])
+    numbers[:, 14] = np.abs(a[:, 5] - b[:, 5])
+    numbers[:, 15:] = FAR
+    if face is not None:
+        to_face = (np.array(face) - middle) / unit[:, None]
+        numbers[:, 15], numbers[:, 16] = np.abs(to_face[:, 0]), to_face[:, 1]
+    return numbers
 
 
 def score_pairs(trees: Trees, candidates: Rows, size: tuple[int, int], face: Point | None) -> Float:

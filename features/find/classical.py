@@ -155,7 +155,7 @@ def _region(
     """A proposal in source pixels."""
     boxes = scale_boxes(proposals.boxes[[index, *extents]], colour.scale, colour.source_size)
     contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
-    return HandRegion(boxes[0], contour, None, float(np.clip(score, 0.0, 1.0)), tuple(boxes[1:]))
+    return HandRegion(boxes[0], contour, None, min(max(score, 0.0), 1.0), tuple(boxes[1:]))
 
 
 class ClassicalSelector:

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import combinations
 from operator import itemgetter
 from typing import Final
@@ -90,7 +89,7 @@ class LearnedSelector:
         found, hand = self._nets.refiner.look(image, boxes)
         scored = sorted(
             (
-                (HAND_IOU * _chance(logit), region_at(box, size))
+                (score := HAND_IOU * _chance(logit), region_at(box, size, score))
                 for box, logit in zip(found, hand, strict=True)
             ),
             key=itemgetter(0),
@@ -101,7 +100,7 @@ class LearnedSelector:
             if score >= LEAST_SCORE and all(
                 box_iou(region.box, other.box) < DISTINCT_IOU for _, other in kept
             ):
-                kept.append((score, replace(region, confidence=score)))
+                kept.append((score, region))
         together = np.zeros((len(kept), len(kept)), np.float32)
         for (first, (_, one)), (second, (score, other)) in combinations(enumerate(kept), 2):
             if box_iou(one.box, other.box) <= APART_IOU:

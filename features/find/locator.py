@@ -40,6 +40,9 @@ MOST_MAXIMA: Final = 48
 """Local maxima that are looked at, so that a picture of specks costs a bounded time."""
 
 
+_NEIGHBOURS: Final = np.ones((3, 3), np.uint8)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Peaks:
     """boxes: float32 (n, 4), x, y, width, height in working pixels. heat: float32 (n,), 0 to 1, falling.
@@ -83,17 +86,22 @@ def padded(values: NDArray[np.int8], fill: int) -> NDArray[np.int8]:
 
 def _maxima(plane: Float, least: float) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows and columns of cells above `least` that no neighbour exceeds, highest first."""
-    highest = cv2.dilate(plane, np.ones((3, 3), np.uint8))
-    rows, columns = np.nonzero((plane >= highest) & (plane > least))
+    highest = cv2.dilate(plane, _NEIGHBOURS)
+    peaks = plane >= highest
+    peaks &= plane > least
+    rows, columns = np.nonzero(peaks)
     order = np.argsort(-plane[rows, columns], kind="stable")
     return rows[order], columns[order]
 
 
 def boxes_at(maps: Float, rows: NDArray[np.intp], columns: NDArray[np.intp]) -> Float:
     """Boxes that the maps (PLANES, h, w) give for some cells: float32 (n, 4)."""
-    left, top, right, bottom = np.exp(np.clip(maps[2:PLANES, rows, columns], -2.0, 6.0))
-    x, y = (columns + 0.5) * STRIDE, (rows + 0.5) * STRIDE
-    return np.stack([x - left, y - top, left + right, top + bottom], axis=1).astype(np.float32)
+    edges = np.exp(np.minimum(np.maximum(maps[2:PLANES, rows, columns], -2.0), 6.0))
+    boxes = np.empty((len(rows), 4), np.float32)
+    boxes[:, 0] = (columns + 0.5) * STRIDE - edges[0]
+    boxes[:, 1] = (rows + 0.5) * STRIDE - edges[1]
+    boxes[:, 2:] = (edges[:2] + edges[2:]).T
+    return boxes
 
 
 def find_peaks(maps: Float, most: int = MOST_PEAKS, least_heat: float = LEAST_HEAT) -> Peaks:

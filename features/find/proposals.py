@@ -92,21 +92,22 @@ class Proposals:
 
 
 def _contours_at(skin: Image, threshold: int) -> tuple[list[Contour], list[Box], int]:
-    """Outer contours of the pixels at or above `threshold` whose boxes may hold a hand, these boxes, and the number of
-    all outlines."""
+    """Outer contours of the pixels at or above `threshold` whose boxes may hold a hand, as OpenCV gives them, int32 (k,
+    1, 2), these boxes, and the number of all outlines."""
     mask = cv2.threshold(skin, threshold - 1, 255, cv2.THRESH_BINARY)[1]
     contours = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     shorter = min(skin.shape)
     low, high = SMALLEST_SIDE * shorter, LARGEST_SIDE * shorter
-    found, boxes = [], []
+    found: list[Contour] = []
+    boxes: list[Box] = []
     for contour in contours:
         if len(contour) < SHORTEST_CONTOUR:
             continue
         box = cv2.boundingRect(contour)
         short, long = (box[2], box[3]) if box[2] < box[3] else (box[3], box[2])
         if low <= short and long <= high and long <= LARGEST_ASPECT * short:
-            found.append(np.asarray(contour, np.int32).reshape(-1, 2))
-            boxes.append((box[0], box[1], box[2], box[3]))
+            found.append(contour)  # type: ignore[arg-type]
+            boxes.append(box)  # type: ignore[arg-type]
     return found, boxes, len(contours)
 
 
@@ -156,7 +157,7 @@ def _distinct(
     kept = distinct(looked_at, MOST)
     return Proposals(
         boxes=looked_at[kept],
-        contours=tuple(contours[index] for index in kept),
+        contours=tuple(np.asarray(contours[index], np.int32).reshape(-1, 2) for index in kept),
         levels=np.array(levels, np.uint8)[kept],
         cut=np.array(cut, bool)[kept],
     )

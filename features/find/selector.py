@@ -9,14 +9,13 @@ import os
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.candidates import APART_IOU
-from lightgesture.features.find.classical import ClassicalSelector
 from lightgesture.features.find.learned import LearnedSelector
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.features.find.settings import ALONE_CONFIDENCE, SelectorSettings
@@ -25,13 +24,16 @@ from lightgesture.features.image import as_bgr8
 from lightgesture.features.outline.regions import outline_in
 from lightgesture.features.types import Candidates, HandRegion, Side
 
+if TYPE_CHECKING:
+    from lightgesture.features.find.classical import ClassicalSelector
+
 SelectorName = Literal["learned", "classical"]
 SELECTORS: tuple[SelectorName, ...] = ("learned", "classical")
 
 
 def load_selector(
     selector: SelectorName = "learned", file: str | os.PathLike[str] | None = None
-) -> LearnedSelector | ClassicalSelector:
+) -> "LearnedSelector | ClassicalSelector":
     """What finds candidates.
 
     selector: "learned" or "classical". file: of `lightgesture train regions`, None for the bundled one. Raises
@@ -42,6 +44,7 @@ def load_selector(
     if selector == "learned":
         return LearnedSelector(load_learned(file))
     from lightgesture.features.compiled import best_loops
+    from lightgesture.features.find.classical import ClassicalSelector
 
     return ClassicalSelector(load_classical(file), best_loops())
 
@@ -106,7 +109,7 @@ def find_hands(
 
 
 @lru_cache(maxsize=len(SELECTORS))
-def _stage(selector: SelectorName) -> LearnedSelector | ClassicalSelector:
+def _stage(selector: SelectorName) -> "LearnedSelector | ClassicalSelector":
     """Read once, because a caller asks for picture after picture."""
     return load_selector(selector)
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.archive import ArchiveError, check_format, read_archive
-from lightgesture.features.find import cells
 from lightgesture.features.find.bank import Bank, bank_from
 from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
 from lightgesture.features.find.trees import Trees
@@ -64,11 +63,12 @@ class LearnedParts:
 
 def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts:
     """The classical choice of a file; without a path, of the bundled one. Raises SelectorError."""
+    from lightgesture.features.find.cells import COLUMNS
 
     def read(arrays: Mapping[str, NDArray[Any]]) -> ClassicalParts:
         return ClassicalParts(
-            trees_from(arrays, "glance", cells.COLUMNS),
-            trees_from(arrays, "extents", cells.COLUMNS + BANK_NUMBERS),
+            trees_from(arrays, "glance", COLUMNS),
+            trees_from(arrays, "extents", COLUMNS + BANK_NUMBERS),
             trees_from(arrays, "extent_pairs", PAIR_COLUMNS),
             bank_from(arrays, "bank"),
         )

@@ -10,7 +10,7 @@ from lightgesture._version import __version__
 from lightgesture.archive.tasks import Task
 from lightgesture.config.settings import BUILT_IN_MODELS, NO_INFLUENCE, PATH_OPTIONS, DecodeSettings
 from lightgesture.sources import is_picture_name
-from lightgesture.sources.bag import is_bag
+from lightgesture.sources.bag_name import is_bag
 
 _ROOMS_WITH_DATA = ("features", "models")
 

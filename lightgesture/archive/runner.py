@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lightgesture.archive.tasks import Advanced, Hear, Opened, Outcome, Printed, Remarked, Task
 from lightgesture.config.opening import make_debug_pictures, open_stream
@@ -23,18 +24,18 @@ from lightgesture.pipeline import Pipeline
 from lightgesture.records import FrameRecord, Record, SummaryRecord
 from lightgesture.results import (
     WRITERS,
-    AnnotatedVideo,
     DebugPictures,
     JsonPrinter,
     TextPrinter,
     Writer,
-    open_annotated_video,
-    open_plot,
     open_writer,
 )
 from lightgesture.results.ownership import ANNOTATED
 from lightgesture.sources import Source
 from lightgesture.watch import Watch
+
+if TYPE_CHECKING:
+    from lightgesture.results.annotated import AnnotatedVideo
 
 
 class Runner:
@@ -132,8 +133,12 @@ class _Work:
         for suffix in reversed(WRITERS):
             self._writers.append(stack.enter_context(open_writer(self._path(suffix), self._task.name)))
         if self._settings.plot:
+            from lightgesture.results.timeline import open_plot
+
             self._frame_writers.append(stack.enter_context(open_plot(self._path(".png"), self._task.name)))
         if self._settings.annotate != "no":
+            from lightgesture.results.annotated import open_annotated_video
+
             video = open_annotated_video(
                 self._path(ANNOTATED), self._task.files, self._settings.annotate, self._settings.rotate
             )

@@ -13,7 +13,7 @@ from lightgesture.results.ownership import is_annotated_copy
 from lightgesture.results.stems import output_stems
 from lightgesture.sources import Source, is_picture_name, natural_key, open_source
 from lightgesture.sources.address import hide_login
-from lightgesture.sources.bag import is_bag
+from lightgesture.sources.bag_name import is_bag
 from lightgesture.sources.chapters import JoinedVideos, group_chapters
 from lightgesture.sources.contents import look_into
 from lightgesture.sources.folder import FrameFolder

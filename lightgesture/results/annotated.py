@@ -28,12 +28,15 @@ if TYPE_CHECKING:
 CODEC: Final = "libx264"
 """An encoder of FFmpeg that PyAV brings."""
 
-QUALITY: Final = 25
+QUALITY: Final = 27
 """Constant rate factor of x264, 0 (lossless) to 51; 18 to 28 is sensible."""
 
-PRESET: Final = "superfast"
+PRESET: Final = "ultrafast"
 """Of x264; slower ones make smaller files. At this quality the picture differs from the drawn one no more than with
-`veryfast` and 23, which takes half as long again for two thirds of the bytes."""
+`superfast` and 25, which takes twice as long for four fifths of the bytes."""
+
+PIXELS: Final = "yuv420p"
+"""How the video holds its pixels: what every player takes."""
 
 TICKS_PER_S: Final = 90_000
 """Of the file's clock: MPEG's, which holds all usual rates exactly."""
@@ -63,7 +66,9 @@ class AnnotatedVideo:
         if self._stream is None:
             self._stream = self._open(picture)
             self._sound.add_to(self._container)
-        frame = av.VideoFrame.from_ndarray(_fitted(picture, self._size), format="bgr24")
+        # By OpenCV, several times as fast as FFmpeg's own way from BGR, and truer at the edges of letters.
+        planes = cv2.cvtColor(_fitted(picture, self._size), cv2.COLOR_BGR2YUV_I420)
+        frame = av.VideoFrame.from_ndarray(np.asarray(planes, np.uint8), format=PIXELS)
         self._tick = max(self._tick + 1, round(time_s * TICKS_PER_S))
         self._sound.write_until(self._tick / TICKS_PER_S)
         frame.pts, frame.time_base = self._tick, Fraction(1, TICKS_PER_S)
@@ -81,7 +86,7 @@ class AnnotatedVideo:
         options = {"crf": str(QUALITY), "preset": PRESET}
         stream = self._container.add_stream(CODEC, NOMINAL_RATE, options=options)
         stream.width, stream.height = self._size
-        stream.pix_fmt = "yuv420p"
+        stream.pix_fmt = PIXELS
         stream.codec_context.time_base = Fraction(1, TICKS_PER_S)
         stream.codec_context.thread_count = 1  # one video a core; and the same bytes on any machine
         return stream
@@ -129,4 +134,6 @@ def _fitted(picture: Image, size: tuple[int, int]) -> Image:
         edges = down // 2, down - down // 2, across // 2, across - across // 2
         return np.asarray(cv2.copyMakeBorder(picture, *edges, cv2.BORDER_CONSTANT, value=(0, 0, 0)), np.uint8)
     down, across = height - picture.shape[0], width - picture.shape[1]
+    if not (down or across):
+        return picture
     return np.asarray(cv2.copyMakeBorder(picture, 0, down, 0, across, cv2.BORDER_REPLICATE), np.uint8)

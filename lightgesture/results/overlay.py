@@ -123,8 +123,15 @@ def render(image_bgr: Image, state: OverlayState, place: Place = "over", rotate:
     """A copy of the frame, turned upright, with the state drawn on it and beside it."""
     original = as_bgr8(image_bgr)
     size = original.shape[1], original.shape[0]
-    picture = np.array(turned(original, rotate), copy=True)
-    pen = Pen(picture)
+    upright = turned(original, rotate)
+    height, width = upright.shape[:2]
+    letter = letter_for(upright)
+    below = ROWS_BELOW * Pen(upright, letter).row if place == "below" else 0
+    beside = BESIDE_LETTERS * letter if place == "beside" else 0
+    # The copy that is drawn on, with the bar, in one pass.
+    whole = cv2.copyMakeBorder(upright, 0, below, 0, beside, cv2.BORDER_CONSTANT, value=DARK)
+    canvas = np.asarray(whole, np.uint8)
+    pen = Pen(canvas[:height, :width], letter)
     for hand in state.hands:
         draw_hand(pen, hand, turn_box(hand.box, size, rotate))
     for card in state.signs:
@@ -134,22 +141,20 @@ def render(image_bgr: Image, state: OverlayState, place: Place = "over", rotate:
         if state.message is not None:
             pen.panel(0, 0, pen.width, (2 if state.message.detail else 1) * pen.row)
             _draw_message(pen, state.message, 0)
-        return picture
-    return _with_bar_below(picture, state) if place == "below" else _with_bar_beside(picture, state)
+    elif place == "below":
+        _draw_bar_below(Pen(canvas[height:], letter), state)
+    else:
+        _draw_bar_beside(Pen(canvas[:, width:], letter), state)
+    return canvas
 
 
-def _with_bar_below(picture: Image, state: OverlayState) -> Image:
-    letter = letter_for(picture)
-    bar = Pen(_ground(ROWS_BELOW * Pen(picture, letter).row, picture.shape[1]), letter)
+def _draw_bar_below(bar: Pen, state: OverlayState) -> None:
     _draw_sentence(bar, state, 0)
     if state.message is not None:
         _draw_message(bar, state.message, 2 * bar.row)
-    return np.vstack([picture, bar.picture])
 
 
-def _with_bar_beside(picture: Image, state: OverlayState) -> Image:
-    letter = letter_for(picture)
-    bar = Pen(_ground(picture.shape[0], BESIDE_LETTERS * letter), letter)
+def _draw_bar_beside(bar: Pen, state: OverlayState) -> None:
     room = bar.width - 2 * bar.margin
     bar.write(f"{state.time_s:.1f} s", bar.margin, 0, GREY)
     top = bar.row
@@ -164,11 +169,6 @@ def _with_bar_beside(picture: Image, state: OverlayState) -> Image:
                 bar.write(line, bar.margin, top, colour)
                 top += bar.row
         top += bar.margin
-    return np.hstack([picture, bar.picture])
-
-
-def _ground(height: int, width: int) -> Image:
-    return np.full((height, width, 3), DARK, np.uint8)
 
 
 def _say(state: OverlayState, text: str, detail: str, colour: Colour) -> OverlayState:

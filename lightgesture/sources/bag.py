@@ -1,11 +1,8 @@
 """ROS 1 bags, ROS 2 bags and MCAP files: the pictures of one topic."""
 
-import os
-import re
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from itertools import chain, islice
-from pathlib import Path
 from typing import NamedTuple
 
 from lightgesture.console import warn
@@ -21,44 +18,14 @@ from lightgesture.sources.bag_messages import (
     read_message,
 )
 from lightgesture.sources.bag_scan import UNCLOSED, ScanError
-from lightgesture.sources.bag_storage import FILE_SUFFIXES, METADATA, Bag
+from lightgesture.sources.bag_storage import Bag
 from lightgesture.sources.packets import PacketDecoder
 from lightgesture.sources.pictures import depth_of
 from lightgesture.sources.ros_images import message_to_bgr8
 from lightgesture.sources.types import Source
 
-_METADATA_KEY, _METADATA_BYTES = b"rosbag2_bagfile_information", 4096
-_PART = re.compile(r"(?P<bag>.+?)(_\d+)?\.(db3|mcap)(-wal|-shm)?")
 _YEAR_2000_S, _YEAR_2100_S = 946_684_800, 4_102_444_800
 """A clock before or after tells no time of day: it is that of a simulation, or counts from the start of a machine."""
-
-
-def is_bag(path: str) -> bool:
-    """Whether the name is that of a bag: a file's by its ending, a folder's by what lies in it.
-
-    The folder of a recorder that was killed has no metadata, but the parts of one bag of ROS 2 and nothing else.
-    """
-    if os.path.isdir(path):
-        return _is_metadata(os.path.join(path, METADATA)) or _has_only_parts(Path(path))
-    return os.path.isfile(path) and path.lower().endswith(FILE_SUFFIXES)
-
-
-def _has_only_parts(folder: Path) -> bool:
-    try:
-        names = [one.name for one in folder.iterdir() if not one.name.startswith(".")]
-    except OSError:
-        return False
-    parts = [match for name in names if (match := _PART.fullmatch(name))]
-    return bool(parts) and len(parts) == len(names) and len({match["bag"] for match in parts}) == 1
-
-
-def _is_metadata(path: str) -> bool:
-    """Whether it is the metadata of a bag; other programs have files of that name too."""
-    try:
-        with open(path, "rb") as stream:
-            return _METADATA_KEY in stream.read(_METADATA_BYTES)
-    except OSError:
-        return False
 
 
 class _Entry(NamedTuple):

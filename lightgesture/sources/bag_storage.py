@@ -10,18 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 from lightgesture.errors import InputError
 from lightgesture.sources.bag_messages import CDR, ROS1
+from lightgesture.sources.bag_name import FILE_SUFFIXES, METADATA
 from lightgesture.sources.bag_scan import Channel, Message, ScanError, scan
 from lightgesture.sources.folder import natural_key
 from lightgesture.sources.inflate import inflate, inflate_whole
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
-
-FILE_SUFFIXES = (".bag", ".mcap", ".db3", ".bag.active")
-"""Endings of the files of bags; a recorder of ROS 1 that was killed leaves the last one."""
-
-METADATA = "metadata.yaml"
-"""The file in a folder that makes it a bag of ROS 2."""
 
 _LISTED_FILE = re.compile(r"^\s*-\s+[\"']?(\S+\.(?:db3|mcap)(?:\.zstd)?)[\"']?\s*$", re.MULTILINE)
 

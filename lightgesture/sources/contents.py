@@ -7,7 +7,7 @@ from typing import Final
 
 from lightgesture.errors import InputError
 from lightgesture.results.ownership import is_annotated_copy
-from lightgesture.sources.bag import is_bag
+from lightgesture.sources.bag_name import is_bag
 from lightgesture.sources.folder import natural_key
 from lightgesture.sources.pictures import is_picture_name
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.sources.address import hide_login
-from lightgesture.sources.bag import BagFile, is_bag
+from lightgesture.sources.bag_name import is_bag
 from lightgesture.sources.capture import open_camera, open_gstreamer
 from lightgesture.sources.contents import look_into
 from lightgesture.sources.folder import FrameFolder, natural_key
@@ -18,6 +18,13 @@ from lightgesture.sources.standard_input import STANDARD_INPUT, StandardInput, S
 from lightgesture.sources.stream_frames import StreamFrames
 from lightgesture.sources.types import LiveSource, Source, SourceOptions
 from lightgesture.sources.video import VideoFile
+
+
+def _open_bag(path: str, options: SourceOptions) -> Source:
+    # What reads bags takes time and memory that only who has one should pay for.
+    from lightgesture.sources.bag import BagFile
+
+    return BagFile(path, options.topic)
 
 
 def _http_stream(address: str, options: SourceOptions) -> LiveSource:
@@ -43,7 +50,7 @@ def _open_folder(path: str, options: SourceOptions) -> Source:
 
 
 SOURCES: dict[str, Callable[[str, SourceOptions], Source]] = {
-    "bag": lambda path, options: BagFile(path, options.topic),
+    "bag": _open_bag,
     "folder": _open_folder,
     "standard input": lambda _, options: StandardInput(options),
     "video": lambda path, options: VideoFile(path, options.fps),

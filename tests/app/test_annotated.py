@@ -12,9 +12,9 @@ from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
 from lightgesture.fsm.events import Certainty
 from lightgesture.records import FrameRecord, Hand
-from lightgesture.results import open_annotated_video, open_plot
+from lightgesture.results.annotated import open_annotated_video
 from lightgesture.results.readings_panel import draw_readings
-from lightgesture.results.timeline import NOT_READ, TOKENS, Timeline
+from lightgesture.results.timeline import NOT_READ, TOKENS, Timeline, open_plot
 from lightgesture.sources import read_picture
 
 

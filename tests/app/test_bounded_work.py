@@ -1,10 +1,8 @@
 """The worst frame: whatever is shown, a frame costs one look, one search and a bounded number of patches at most."""
 
-import cv2
-import numpy as np
 import pytest
 
-from lightgesture.actions.decode import SAMPLE
+from lightgesture.benchmarks.bad_frames import SCENES, frame_times, read_clip
 from lightgesture.features.find.locator import MOST_PEAKS
 from lightgesture.features.find.refiner import Refiner
 from lightgesture.features.find.selector import load_selector
@@ -13,7 +11,7 @@ from lightgesture.hands import HandReader, ReadingStage
 from lightgesture.hands.memory import memory_for_sentences
 from lightgesture.models import load_classifier
 from lightgesture.models.cnn import MOST_DOUBTED
-from lightgesture.sources import open_source
+from lightgesture.pipeline import Pipeline
 
 MOST_PATCHES = 4
 """Of two hands, two extents each."""
@@ -21,32 +19,10 @@ MOST_PATCHES = 4
 
 @pytest.fixture(name="clip", scope="module")
 def _clip():
-    with open_source(SAMPLE) as source:
-        return [frame.image for frame, _ in zip(source, range(60), strict=False)][30:]
+    return read_clip()
 
 
-def crossing(clip):
-    return [image if index % 2 else np.ascontiguousarray(image[:, ::-1]) for index, image in enumerate(clip)]
-
-
-def flickering(clip):
-    return [image if index % 2 else (image // 4).astype(np.uint8) for index, image in enumerate(clip)]
-
-
-def noise(clip):
-    rng = np.random.default_rng(0)
-    return [rng.integers(0, 256, image.shape, np.uint8) for image in clip]
-
-
-def blobs(clip):
-    rng = np.random.default_rng(1)
-    picture = np.full_like(clip[0], (140, 100, 50))
-    for x, y in rng.integers(0, 480, (500, 2)).tolist():
-        cv2.circle(picture, (x, y), 9, (120, 150, 210), -1)
-    return [np.roll(picture, 7 * index, axis=1) for index in range(len(clip))]
-
-
-@pytest.mark.parametrize("scene", [crossing, flickering, noise, blobs])
+@pytest.mark.parametrize("scene", list(SCENES.values()), ids=list(SCENES))
 def test_no_frame_costs_more_than_a_look_and_a_search(scene, clip, monkeypatch):
     finder, classifier = load_selector(), load_classifier("cnn")
     work = {"searches": 0, "looks": 0, "windows": 0, "patches": 0}
@@ -76,3 +52,9 @@ def test_no_frame_costs_more_than_a_look_and_a_search(scene, clip, monkeypatch):
         assert work["looks"] <= 1
         assert work["windows"] <= MOST_PEAKS + 2
         assert work["patches"] <= MOST_PATCHES + MOST_DOUBTED
+
+
+def test_the_worst_frame_is_that_of_the_quickest_pass(clip):
+    times = frame_times(Pipeline(), clip[:3], 2)
+    assert len(times) == 3
+    assert all(0.0 < spent_ms < 1000.0 for spent_ms in times)

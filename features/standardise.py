@@ -98,7 +98,7 @@ def _tables(shares: NDArray[np.floating]) -> Float:
     squares = np.array([float(share @ _SQUARES) for share in shares])[:, None]
     deviations = np.sqrt(np.maximum(squares - means * means, 0.0))
     tables = (_ROOTS - means) / (deviations + EVENNESS)
-    return np.minimum(np.maximum(tables, -LARGEST), LARGEST).astype(np.float32)
+    return np.asarray(np.minimum(np.maximum(tables, -LARGEST), LARGEST), np.float32)
 
 
 def patch_levels(patches: NDArray[np.uint8], quantisation: Quantisation) -> NDArray[np.int8]:

@@ -85,7 +85,8 @@ FULL = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (200, 200))
-from lightgesture.results import open_annotated_video, open_writer
+from lightgesture.results import open_writer
+from lightgesture.results.annotated import open_annotated_video
 from lightgesture.errors import UsageError
 from lightgesture.fsm import Notice
 from pathlib import Path

@@ -10,7 +10,7 @@ import pytest
 from lightgesture.archive.tasks import make_tasks
 from lightgesture.errors import ExitStatus, InputError
 from lightgesture.frames import Frame
-from lightgesture.results import open_annotated_video
+from lightgesture.results.annotated import open_annotated_video
 from lightgesture.results.ownership import is_annotated_copy
 from lightgesture.sources import Source, open_source
 from lightgesture.sources.chapters import JoinedVideos, group_chapters

@@ -6,7 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightgesture.features.find.candidates import DISTINCT_IOU, LEAST_SCORE, MOST, best_distinct
-from lightgesture.features.geometry import box_iou, keep_distinct, mirror_box, pairwise_iou, scale_boxes
+from lightgesture.features.geometry import (
+    box_iou,
+    keep_distinct,
+    matched_iou,
+    mirror_box,
+    pairwise_iou,
+    scale_boxes,
+)
 
 
 def _written_out(boxes, scores):
@@ -80,3 +87,9 @@ def test_scaled_boxes_are_rounded_edge_by_edge_and_have_a_pixel(box, scale, size
         low.append(min(max(first, 0), most - 1))
         assert place == low[-1]
         assert reach == max(min(last, most) - low[-1], 1)
+
+
+def test_boxes_matched_one_to_one_overlap_as_each_two_do():
+    rng = np.random.default_rng(3)
+    first, second = (rng.uniform(0, 60, (2, 7, 4))).astype(np.float32)
+    assert np.array_equal(matched_iou(first, second), pairwise_iou(first, second).diagonal())

@@ -55,6 +55,7 @@ GROUPS: dict[str, Group] = {
         _modules("lightgesture/hands", "hands"),
         (
             "tests/app/test_front_end.py",
+            "tests/app/test_hand_reader.py",
             "tests/app/test_hidden_hands.py",
             "tests/app/test_pipeline.py",
             "tests/app/test_reading_bounds.py",

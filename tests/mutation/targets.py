@@ -34,7 +34,7 @@ LINK = (
 """The MAVLink half of the vehicle, whose tests take the time of its time-outs."""
 PROCESSES = ("runner", "watchdog", "watchdog_process")
 """A thread and a process of its own, in which an exchange of code does not arrive; slow tests hold them."""
-IN_TIME = "bounded_time or at_once or import_is_light"
+IN_TIME = "bounded_time or refused_at_once or import_is_light"
 
 GROUPS: dict[str, Group] = {
     "fsm": Group(_modules("fsm", "fsm"), ("tests/fsm",), IN_TIME),

@@ -52,7 +52,7 @@ GROUPS: dict[str, Group] = {
         ),
     ),
     "reading": Group(
-        _modules("lightgesture/hands", "hands"),
+        _modules("lightgesture/hands", "hands", "pictures"),  # which are for looking at
         (
             "tests/app/test_front_end.py",
             "tests/app/test_hand_reader.py",

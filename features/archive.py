@@ -50,7 +50,6 @@ _DAMAGES = (
     ValueError,
     KeyError,
     EOFError,
-    MemoryError,
     NotImplementedError,
     RecursionError,
     RuntimeError,
@@ -58,7 +57,8 @@ _DAMAGES = (
     zipfile.BadZipFile,
     zlib.error,
 )
-"""What a file that was cut, altered or made by somebody else may cause, an encrypted one included."""
+"""What a file that was cut, altered or made by somebody else may cause, an encrypted one included. What is read of it
+is bounded, so that a memory that is too small is no damage."""
 
 
 class ArchiveError(ValueError):

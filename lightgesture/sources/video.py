@@ -32,6 +32,9 @@ USUAL_STEPS: Final = 1.5
 SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
 
+ROOM: Final = 64 << 20
+"""Bytes that are enough to open any video: several times what was seen."""
+
 SPARE_S: Final = 0.1
 """Seconds that a duration may promise beyond the last frame of a file that was cut off, and all frames be there."""
 
@@ -196,11 +199,25 @@ def _open(path: str) -> "InputContainer":
             os.path.abspath(path), options={"protocol_whitelist": "file"}, metadata_errors="replace"
         )
     except MemoryError:
-        raise
+        if not _has_room():
+            raise
+        raise InputError(
+            f"{path}: wants more memory to be opened than any video does, so it is damaged; copy it again"
+        ) from None
     except (av.error.FFmpegError, ValueError, UnicodeError):
         raise InputError(
             f"{path}: is no video that can be read, or is cut off; copy it again or convert it"
         ) from None
+
+
+def _has_room() -> bool:
+    """Whether there is memory to open a video: FFmpeg says of a size that a damaged header names what it says where
+    there is none."""
+    try:
+        bytearray(ROOM)
+    except MemoryError:
+        return False
+    return True
 
 
 def _choose(container: "InputContainer", path: str) -> "VideoStream":

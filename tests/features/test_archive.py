@@ -210,3 +210,14 @@ def test_another_kind_or_format_is_refused(file):
         check_format(file, HEADER, "cnn", 2)
     with pytest.raises(ArchiveError, match=r"own\.npz: has format 2, this version reads 3"):
         check_format(file, HEADER, "svm", 3)
+
+
+def test_where_there_is_no_memory_an_archive_is_not_told_to_be_damaged(file, monkeypatch):
+    """The command says that the memory is too small, which `damaged; train it again` would hide."""
+
+    def no_memory(*_):
+        raise MemoryError
+
+    monkeypatch.setattr(archive, "read_whole", no_memory)
+    with pytest.raises(MemoryError):
+        read_archive(file)

@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from lightgesture.fsm import Sign, Signs
+from lightgesture.fsm import Sign, Signs, load_grammar
 from lightgesture.fsm.language.forms import is_digit
 from lightgesture.fsm.rules.beam import SHORT_COST, SHORT_S
 from lightgesture.fsm.rules.loop import COST
@@ -232,6 +232,30 @@ def test_what_comes_sooner_is_the_next_word(trial):
     readings = asked(trial, 0, 6)
     assert not readings["STOP", "HOVER", "3", "2"][1].spoken[-1].is_again
     assert ("STOP", "HOVER", "2") not in readings
+
+
+def test_what_was_asked_for_stays_so_where_a_better_way_to_the_same_words_is_found(trial):
+    trial.rest(4, Signs())
+    for word in ("STOP", "HOVER"):
+        trial.sign(word, 8)
+        trial.rest(3)
+    trial.sign("3", 5, 0.12, 0.12)
+    trial.search.beam.ask(3, frozenset({"3", "2"}))
+    before = trial.readings()["STOP", "HOVER", "3"][1]
+    trial.sign("3", 6)
+    after = trial.readings()["STOP", "HOVER", "3"][1]
+    assert after.spoken[-1].frame > before.spoken[-1].frame
+    assert (after.asked, after.asked_s) == (before.asked, before.asked_s) == ({"3", "2"}, before.asked_s)
+    assert before.asked_s > 0
+
+
+def test_no_reading_is_longer_than_a_sentence_may_be(write_grammar):
+    trial = Trial(load_grammar(write_grammar(("max_words = 40", "max_words = 4"))))
+    trial.rest(4, Signs())
+    for word in ("STOP", "HOVER", "5", "0", "1"):
+        trial.sign(word, 8)
+        trial.rest(3)
+    assert max(len(said) for readings in trial.best for said in readings) == 4
 
 
 def test_a_held_sign_is_told_by_its_window(trial):

@@ -34,7 +34,7 @@ LINK = (
 """The MAVLink half of the vehicle, whose tests take the time of its time-outs."""
 PROCESSES = ("runner", "watchdog", "watchdog_process")
 """A thread and a process of its own, in which an exchange of code does not arrive; slow tests hold them."""
-IN_TIME = "bounded_time or at_once or import_is_light"
+IN_TIME = "bounded_time or refused_at_once or import_is_light"
 
 GROUPS: dict[str, Group] = {
     "fsm": Group(_modules("fsm", "fsm"), ("tests/fsm",), IN_TIME),
@@ -52,9 +52,10 @@ GROUPS: dict[str, Group] = {
         ),
     ),
     "reading": Group(
-        _modules("lightgesture/hands", "hands"),
+        _modules("lightgesture/hands", "hands", "pictures"),  # which are for looking at
         (
             "tests/app/test_front_end.py",
+            "tests/app/test_hand_reader.py",
             "tests/app/test_hidden_hands.py",
             "tests/app/test_pipeline.py",
             "tests/app/test_reading_bounds.py",

@@ -4,6 +4,7 @@ import bz2
 import struct
 import zlib
 from contextlib import closing, suppress
+from pathlib import Path
 
 import av
 import cv2
@@ -139,6 +140,16 @@ def test_a_frame_that_is_larger_than_its_container_says_is_not_decoded(write_vid
     monkeypatch.setattr(decoding, "MAX_PIXELS", 1000)
     with pytest.raises(InputError, match="no frame of this video"), VideoFile(path) as source:
         list(source)
+
+
+def test_a_video_that_wants_more_memory_than_any_is_told_from_a_memory_that_is_too_small(monkeypatch):
+    """Found by fuzzing: a length in a header that FFmpeg makes room for at once."""
+    path = Path(__file__).parents[2] / "fuzz" / "corpus" / "video" / "fault-a57b7053"
+    with pytest.raises(InputError, match="wants more memory to be opened than any video does"):
+        VideoFile(str(path))
+    monkeypatch.setattr(video, "ROOM", 1 << 60)
+    with pytest.raises(MemoryError):
+        VideoFile(str(path))
 
 
 def test_a_codec_that_ffmpeg_does_not_know_is_told(write_video):

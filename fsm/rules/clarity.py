@@ -126,12 +126,10 @@ class Clarity:
         one was nearly as likely or more, 0 to 1."""
         led_s = contested_s = 0.0
         for lead in self._leads:
-            if not word.began <= (lead.began + lead.last) / 2 + PASSAGE_S < after.began:
-                continue
-            is_own = lead.column == word.column
-            led_s += lead.led_s if is_own else 0.0
-            contested_s += lead.contested_s if is_own else lead.led_s
-        return contested_s / max(led_s + contested_s, TOLERANCE_S)
+            if word.began <= (lead.began + lead.last) / 2 + PASSAGE_S < after.began:
+                led_s += lead.led_s
+                contested_s += lead.contested_s if lead.column == word.column else lead.led_s
+        return contested_s / max(led_s, TOLERANCE_S)
 
     def _of(self, word: Spoken, first: float, end: float) -> Iterator[Run]:
         """The runs of a word's sign that touch the time from `first` to `end`."""

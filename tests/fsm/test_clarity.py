@@ -215,6 +215,19 @@ def test_another_number_contests_one_that_it_is_half_as_likely_as(first, second,
     assert 0 < contested(clarity) < share or not is_contested
 
 
+def test_the_share_is_of_the_time_that_numbers_were_likely():
+    """Contested for half of its time, then for all of it, with another number for a third of the time besides."""
+    clarity = Clarity([1, 2])
+    scores = np.full(8, -9.0)
+    for rival, expected in ((-9.0, 0.0), (-0.2, 0.5)):
+        scores[1], scores[2] = -0.1, rival
+        clarity.step(scores, 0.5, 0.5)
+        assert contested(clarity) == pytest.approx(expected)
+    scores[1] = -9.0
+    clarity.step(scores, 0.5, 0.5)
+    assert contested(clarity) == pytest.approx(2 / 3)
+
+
 @pytest.mark.parametrize(("score", "expected"), [(LIKELY, 1.0), (LIKELY - 1e-9, 0.0)])
 def test_a_number_leads_only_where_it_is_likely(score, expected):
     clarity = Clarity([1, 2])

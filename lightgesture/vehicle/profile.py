@@ -128,8 +128,7 @@ OWN_PARAMETERS = {"cap": (0.05, 1.0), "interval_s": (0.1, 60.0)}
 
 class MotionTable(Table):
     """`[motion]`: how the vehicle answers the diver (`--answer motion`). nod, shake: where the stick goes first,
-    then to the other side. beat_s: seconds to a side. times: how often to both sides. mode: entered before; none:
-    any."""
+    then to the other side. beat_s: seconds to a side. times: how often to both sides."""
 
     nod: dict[Literal["x", "y", "z", "r"], Share] = Field(min_length=1)
     shake: dict[Literal["x", "y", "z", "r"], Share] = Field(min_length=1)

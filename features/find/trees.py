@@ -87,26 +87,6 @@ class _LaidOut:
         return np.asarray(self.base + self.value.take(node).sum(axis=1), np.float32)
 
 
-@lru_cache(maxsize=8)
-def _laid_out(trees: Trees) -> _LaidOut:
-    """Laid out once for all the pictures that are looked at with the same trees."""
-    count, nodes = trees.feature.shape
-    roots = (np.arange(count) * nodes).astype(np.intp)
-    children = np.stack([trees.left + roots[:, None], trees.right + roots[:, None]], axis=-1).ravel()
-    feature, threshold = trees.feature.astype(np.intp).ravel(), trees.threshold.ravel()
-    return _LaidOut(
-        2 * roots,
-        feature[roots],
-        threshold[roots],
-        np.repeat(feature, 2),
-        np.repeat(threshold, 2),
-        2 * children,
-        np.repeat(trees.value.ravel(), 2),
-        trees.base,
-        trees.depth,
-    )
-
-
 LEAF_UNIT: Final = 1 << 20
 """Steps of one in the leaves of `FlatTrees`."""
 
@@ -154,3 +134,20 @@ def plain_walk(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]
         goes_right = values.take(row + trees.feature.take(node)) > trees.threshold.take(node)
         node = trees.children.take(2 * node + goes_right)
     return np.asarray(trees.leaf.take(node).sum(axis=1, dtype=np.int64), np.int64)
+
+
+@lru_cache(maxsize=8)
+def _laid_out(trees: Trees) -> _LaidOut:
+    """Laid out once for all the pictures that are looked at with the same trees."""
+    flat = FlatTrees.of(trees)
+    return _LaidOut(
+        2 * flat.roots,
+        flat.feature[flat.roots],
+        flat.threshold[flat.roots],
+        np.repeat(flat.feature, 2),
+        np.repeat(flat.threshold, 2),
+        2 * flat.children,
+        np.repeat(trees.value.ravel(), 2),
+        trees.base,
+        trees.depth,
+    )

@@ -167,15 +167,14 @@ class ArucoTags:
         named = zip(numbers, self._placed(_stacked(corners), scale, corner), strict=True)
         margin = self._settings.least_margin
         rejected = dark_inside(window, _stacked(others), self._family, margin)
-        read = read_outlines(grey, self._placed(rejected, scale, corner), self._family, margin)
+        outlines = grown(self._placed(rejected, scale, corner), OUTLINE_PX / scale)
+        read = read_outlines(grey, outlines, self._family, margin)
         return self._checked(grey, named), self._checked(grey, read)
 
     def _placed(self, outlines: Float, scale: float, corner: tuple[int, int]) -> Float:
         """Outlines of a window, (k, 4, 2), where they are in the picture."""
-        if not len(outlines):
-            return outlines
         half, origin = np.float32(0.5), np.array(corner, np.float32)
-        return grown((outlines + half) / np.float32(scale) - half + origin, OUTLINE_PX / scale)
+        return np.asarray((outlines + half) / np.float32(scale) - half + origin, np.float32)
 
     def _checked(self, grey: Grey, read: Iterable[tuple[int, Float]]) -> list[Tag]:
         """Those whose cells bear them out."""

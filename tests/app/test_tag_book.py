@@ -1,7 +1,5 @@
 """The book of cards: what is printed is what is read."""
 
-import re
-
 import cv2
 import numpy as np
 import pytest
@@ -60,11 +58,7 @@ def test_what_is_missing_doubled_or_unknown_is_told(run, tmp_path):
     write_book(path, "36h11", [*cards[1:], cards[1], Card(300, "DANCE")], 60.0)
     status, lines, messages = run("check", path)
     assert status == 1
-    (line,) = [line for line in lines if line.startswith("page 32: ")]
-    found = re.fullmatch(r"page 32: tag 300  no word, ([0-9.]+) mm", line)
-    assert found is not None
-    # An outline is told to about a pixel of the page, 1 % of a tag of 60 mm.
-    assert float(found[1]) == pytest.approx(60.0, abs=0.6)
+    assert "page 32: tag 300  no word, 60.0 mm" in lines
     assert [message.partition("odd.pdf: ")[2] for message in messages] == [
         "tag 0 (STOP) is missing",
         "tag 1 is there 2 times; keep one",

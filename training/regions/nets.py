@@ -61,21 +61,9 @@ def learn_nets(
     """Locator and refiner, learnt from the material and from composed pictures. What is done lies in `folder`: where
     both are, they are not trained again."""
     done = folder / NETS
-    if not done.is_file():
-        locator, refiner = _learn(material, composed, folder, seed, settings, progress)
-        write_networks({LOCATOR: locator, REFINER: refiner}, done)
-    _, arrays = read_archive(done)
-    return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
-
-
-def _learn(
-    material: Material,
-    composed: list[BoxedPicture],
-    folder: Path,
-    seed: int,
-    settings: RegionTraining,
-    progress: Progress,
-) -> tuple[IntegerNetwork, IntegerNetwork]:
+    if done.is_file():
+        _, arrays = read_archive(done)
+        return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
     from lightgesture.training.nets.locator import train_locator
     from lightgesture.training.nets.locator_samples import LocatorSamples
     from lightgesture.training.nets.refiner import train_refiner
@@ -94,4 +82,6 @@ def _learn(
     mistaken = [boxes for _, boxes in hard_regions(divers.pictures, locator)] if divers else []
     windows = RefinerSamples(frames, empty, hard, divers, mistaken)
     steps = settings.refiner_steps
-    return locator, train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)
+    refiner = train_refiner(windows, steps, precision, second, seed, folder / "refiner.pt", progress)
+    write_networks({LOCATOR: locator, REFINER: refiner}, done)
+    return locator, refiner

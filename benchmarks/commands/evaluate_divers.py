@@ -73,6 +73,10 @@ def find_and_read(
 
     if args.join:
         return divers.joined([Path(folder) for folder in args.join]), []
+    if args.fold and (args.selector or args.profile or len(models) > 1):
+        raise UsageError(
+            "--fold names the selectors itself; give one --model, no --selector and no --profile"
+        )
     frames = _frames(args)
     try:
         profile = load_profile(args.profile) if args.profile else None
@@ -106,12 +110,12 @@ def _frames(args: argparse.Namespace) -> "list[DiverFrame]":
 def _folds(
     models: "Mapping[str, Classifier]", files: "list[str]", frames: "list[DiverFrame]"
 ) -> "list[tuple[DiverMethod, list[DiverFrame]]]":
-    """The first model with each selector file, and the pictures of dives that its card, as the first, says it did not
+    """The model with each selector file, and the pictures of dives that its card, as the first, says it did not
     see. InputError: a card is missing. Raises SelectorError."""
     from lightgesture.training.pool.divers import SOURCE
     from lightgesture.training.pool.left_out import read_left_out
 
-    name, classifier = next(iter(models.items()))
+    ((name, classifier),) = models.items()
     folds, left = [], frames
     for file in files:
         left_out = read_left_out(Path(file))

@@ -265,6 +265,14 @@ def test_selectors_of_folds_are_scored_on_the_dives_that_they_did_not_see(comman
         command("--fold", tmp_path / "none.npz")
 
 
+@pytest.mark.parametrize(
+    "more", [["--selector", "learned"], ["--profile", "a"], ["--model", "cnn", "--model", "svm"]]
+)
+def test_folds_name_their_selectors_themselves(command, more):
+    with pytest.raises(UsageError, match="--fold names the selectors itself"):
+        command("--fold", "1.npz", *more)
+
+
 def test_rows_of_several_models_are_not_put_together(command, tmp_path):
     command("--out", tmp_path / "1", "--model", "cnn", "--model", "svm")
     with pytest.raises(InputError, match="rows of several models or selectors"):

@@ -7,7 +7,7 @@ landmarks. `left` and `right` say where the thumb points in the picture, whichev
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import cv2
@@ -83,7 +83,7 @@ class CropSettings:
     stand behind one another."""
     together: float = 0.0
     """Share, 0 to 1, of hands whose stretched fingers lie side by side."""
-    backdrops: int = field(default_factory=lambda: BACKDROPS)
+    backdrops: int = BACKDROPS
     """Surroundings of each kind, drawn once, 1 or more; a pair takes as long as ten hands."""
     atlases: int = 0
     """Textures of skin, and as many of gloves, that hands share, drawn once; 0: each has its own, which takes a third

@@ -1,3 +1,5 @@
+from functools import partial
+
 import cv2
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from lightgesture.synth.poses import TOKENS
 
 @pytest.fixture(autouse=True)
 def _few_backdrops(monkeypatch):
-    monkeypatch.setattr(crop_module, "BACKDROPS", 1)
+    monkeypatch.setattr(crop_module, "CropSettings", partial(CropSettings, backdrops=1))
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ import pytest
 
 from lightgesture.errors import UsageError
 from lightgesture.features.patch import PatchSettings, cut_patch
-from lightgesture.synth import crops
 from lightgesture.training.card import data_section
 from lightgesture.training.commands import classifier
 from lightgesture.training.nets import hand_samples
@@ -19,7 +18,7 @@ from lightgesture.training.pictures import augment
 from lightgesture.training.pictures.augment import AugmentSettings
 from lightgesture.training.pictures.light import LightSettings
 from lightgesture.training.pictures.sea import SeaLook
-from lightgesture.training.pool import altered, diver_kinds
+from lightgesture.training.pool import altered, diver_kinds, patch_kinds
 from lightgesture.training.pool.divers import Divers
 from lightgesture.training.pool.negatives import Scene
 from lightgesture.training.pool.originals import Originals, PoolSettings
@@ -122,7 +121,7 @@ def test_a_region_in_other_light_keeps_its_landmarks():
 
 
 def test_rendered_hands_bring_theirs_and_hidden_ones_none(monkeypatch):
-    monkeypatch.setattr(crops, "BACKDROPS", 1)
+    monkeypatch.setattr(patch_kinds, "CROPS", replace(patch_kinds.CROPS, backdrops=1))
     originals = Originals([dotted(4, token) for token in ("5", "none")] * 8)
     random = np.random.default_rng(0)
     (rendered, *_) = KINDS["rendered"](originals, PoolSettings(), 0, 11, random)

@@ -7,9 +7,9 @@ import pytest
 
 from lightgesture.features.patch import cut_patch
 from lightgesture.features.standardise import channel_tables
-from lightgesture.synth import crops
 from lightgesture.training.nets import hand_samples
 from lightgesture.training.nets.hand_samples import HandSamples, standardised
+from lightgesture.training.pool import patch_kinds
 from lightgesture.training.pool.negatives import Scene
 from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.pool.patch_kinds import HIDDEN, KEPT, KINDS, MARGIN
@@ -21,7 +21,7 @@ SETTINGS = PoolSettings(copies=2, rounds=1, rendered=0)
 
 @pytest.fixture(autouse=True)
 def _few_backdrops(monkeypatch):
-    monkeypatch.setattr(crops, "BACKDROPS", 1)
+    monkeypatch.setattr(patch_kinds, "CROPS", replace(patch_kinds.CROPS, backdrops=1))
 
 
 def picture(seed, size=80):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lightgesture.features.patch import PatchSettings, cut_patch
-from lightgesture.synth import crops
+from lightgesture.training.pool import patch_kinds
 from lightgesture.training.pool.negatives import Scene
 from lightgesture.training.pool.originals import Originals, PoolSettings
 from lightgesture.training.pool.patch_pool import PatchPool, make_pool
@@ -17,7 +17,7 @@ SETTINGS = PoolSettings(copies=3, mild_share=1 / 3, rounds=1, rendered=0)
 
 @pytest.fixture(autouse=True)
 def _few_backdrops(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(crops, "BACKDROPS", 1)
+    monkeypatch.setattr(patch_kinds, "CROPS", replace(patch_kinds.CROPS, backdrops=1))
 
 
 def hand(token: str, source: str) -> LabelledHand:

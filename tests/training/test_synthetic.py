@@ -1,17 +1,19 @@
 """Rendered hands as training samples: all tokens, never originals, the same for the same seed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.synth import crops
 from lightgesture.training.pictures.augment import AugmentSettings
+from lightgesture.training.pool import patch_kinds
 from lightgesture.training.pool.patch_kinds import rendered_hands
 
 
 @pytest.fixture(autouse=True)
 def _few_backdrops(monkeypatch):
-    monkeypatch.setattr(crops, "BACKDROPS", 1)
+    monkeypatch.setattr(patch_kinds, "CROPS", replace(patch_kinds.CROPS, backdrops=1))
 
 
 def _samples(seed, count=12):

@@ -168,9 +168,10 @@ def _layout(stream: IO[bytes], name: str) -> tuple[tuple[int, ...], bool, np.dty
         raise ValueError(f"{name}: {error}") from None
 
 
-def check_format(file: Path, header: Mapping[str, Any], kind: str, version: int) -> None:
-    """Refuse a file of another kind or version. Raises ArchiveError."""
+def check_format(file: Path, header: Mapping[str, Any], kind: str, version: int, *older: int) -> None:
+    """Refuse a file of another kind, or of a version that is neither this one nor an older one that will do. Raises
+    ArchiveError."""
     if header.get("kind") != kind:
         raise ArchiveError(file, f"is no {kind} model")
-    if header.get("format") != version:
+    if header.get("format") not in (version, *older):
         raise ArchiveError(file, f"has format {header.get('format')!r:.40}, this version reads {version}")

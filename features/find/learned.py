@@ -51,7 +51,7 @@ class Places:
     def find(self, colour: ColourMap) -> tuple[Peaks, Refined]:
         """Peaks of the locator and what the refiner says of each."""
         tables = self._locator.table(colour.picture)
-        peaks = find_peaks(self._locator.process(colour.picture, tables))
+        peaks = find_peaks(self._locator.process(colour, tables))
         if not self._is_alike:
             tables = self.refiner.table(colour.picture)
         return peaks, self.refiner.process(colour, peaks.boxes, tables)

@@ -3,6 +3,10 @@
 One stage, without anchors: heat at the middle of each hand (Zhou, Wang and Krähenbühl, "Objects as Points", 2019) and
 the distances to the four edges of its box (Tian, Shen, Chen and He, "FCOS", 2019), on a grid of 4 working pixels. A
 second plane of heat marks faces, which tell the axis of the body. Peaks are local maxima of the heat, each with a box.
+
+The net sees twice the width and height of the working picture, at which the fingers of a diver's small, pale hand still
+stand apart: of dives that it has not seen it finds twice as many hands so, and since its first layers halve the picture
+three times, not twice, for a third more products.
 """
 
 from dataclasses import dataclass
@@ -12,13 +16,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.colour import ColourMap
 from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.net.runner import Levels, Network, logistic
 from lightgesture.features.standardise import channel_tables
 from lightgesture.features.types import Float, Image
 
-MULTIPLE: Final = 16
+DETAIL: Final = 2
+"""Pixels that the net sees along one of the working picture."""
+MULTIPLE: Final = 32
 """Height and width that the net sees are multiples of its coarsest grid; the rest is filled with the mean colour."""
 INPUT, HEAT, EDGES = "picture", "heat", "edges"
 """Tensors of the net. Heat and edges are apart because one scale of eight bits would not fit both."""
@@ -54,7 +61,7 @@ class Peaks:
 
 
 class Locator:
-    """Runs the net on working pictures of any size."""
+    """Runs the net on pictures of any size."""
 
     def __init__(self, network: IntegerNetwork) -> None:
         self._network = Network(network)
@@ -63,18 +70,27 @@ class Locator:
         """int8 (1, 256, 3): the integer that stands for each value of each channel of a picture."""
         return self._network.table(INPUT, channel_tables(picture))
 
-    def process(self, picture: Image, tables: Levels) -> Float:
-        """Maps of a working picture, float32 (6, h, w) on cells of 4 pixels; see `HAND`.
+    def process(self, colour: ColourMap, tables: Levels) -> Float:
+        """Maps of a picture, float32 (6, h, w) on cells of 4 working pixels; see `HAND`.
 
-        picture: uint8 (height, width, 3), BGR. tables: its `table`.
+        tables: `table` of the working picture.
         """
-        seen = np.asarray(cv2.LUT(picture, tables), np.int8)
+        seen = np.asarray(cv2.LUT(detailed(colour), tables), np.int8)
         maps = self._network.run({INPUT: padded(seen, self._network.zero(INPUT))})
         return np.concatenate([maps[HEAT][0], maps[EDGES][0]], axis=2).transpose(2, 0, 1)
 
 
+def detailed(colour: ColourMap) -> Image:
+    """What the net sees, uint8 (height, width, 3): `DETAIL` times the size of the working picture."""
+    height, width = colour.picture.shape[:2]
+    size = DETAIL * width, DETAIL * height
+    if colour.detail.shape[1::-1] == size:
+        return colour.detail
+    return np.asarray(cv2.resize(colour.detail, size, interpolation=cv2.INTER_LINEAR), np.uint8)
+
+
 def padded(values: NDArray[np.int8], fill: int) -> NDArray[np.int8]:
-    """int8 (h, w, 3) -> (1, H, W, 3), the sides filled up to multiples of 16 on the right and below."""
+    """int8 (h, w, 3) -> (1, H, W, 3), the sides filled up to multiples of 32 on the right and below."""
     height, width = values.shape[:2]
     down, right = -height % MULTIPLE, -width % MULTIPLE
     if down or right:

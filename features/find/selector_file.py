@@ -17,17 +17,21 @@ from lightgesture.features.net.file import network_from
 from lightgesture.features.net.network import IntegerNetwork
 
 KIND: Final = "selector"
-FORMAT: Final = 3
+FORMAT: Final = 4
 """Version of the file; raised whenever an older reader would misread a newer file."""
+OLDER_NETS: Final = 3
+"""Version whose nets have the layers of these, with another stride: they can learn on, and nothing else."""
 BUNDLED: Final = Path(__file__).resolve().parents[1] / "data" / "selector.npz"
 BANK_NUMBERS: Final = 2
 """Numbers of a region that come from the bank of outlines."""
 TREE_ARRAYS: Final = ("feature", "threshold", "left", "right", "value")
 TREE_NUMBERS: Final = ("base", "depth")
 """What is stored of trees, each under the name of the part and this one."""
+LOCATOR, REFINER = "locator", "refiner"
+"""Beginnings of the names of each net's arrays."""
 CLASSICAL_PARTS, LEARNED_PARTS = (
     ("glance", "extents", "extent_pairs", "bank"),
-    ("places", "place_pairs", "locator", "refiner"),
+    ("places", "place_pairs", LOCATOR, REFINER),
 )
 """Beginnings of the names of what either choice needs; the rest stays packed."""
 REMEDY: Final = "make it again with: lightgesture train regions"
@@ -81,8 +85,8 @@ def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
 
     def read(arrays: Mapping[str, NDArray[Any]]) -> LearnedParts:
         return LearnedParts(
-            network_from(arrays, "locator"),
-            network_from(arrays, "refiner"),
+            network_from(arrays, LOCATOR),
+            network_from(arrays, REFINER),
             trees_from(arrays, "places", PLACE_COLUMNS),
             trees_from(arrays, "place_pairs", PAIR_COLUMNS),
         )
@@ -90,15 +94,25 @@ def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
     return _read(path, LEARNED_PARTS, read)
 
 
+def load_nets(path: str | os.PathLike[str]) -> tuple[IntegerNetwork, IntegerNetwork]:
+    """Locator and refiner of a file, to learn on from; one of before will do. Raises SelectorError."""
+
+    def read(arrays: Mapping[str, NDArray[Any]]) -> tuple[IntegerNetwork, IntegerNetwork]:
+        return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
+
+    return _read(path, (LOCATOR, REFINER), read, OLDER_NETS)
+
+
 def _read(
     path: str | os.PathLike[str] | None,
     parts: tuple[str, ...],
     read: Callable[[Mapping[str, NDArray[Any]]], Parts],
+    *older: int,
 ) -> Parts:
     file = Path(path) if path is not None else BUNDLED
     try:
         header, arrays = read_archive(file, lambda name: name.startswith(parts))
-        check_format(file, header, KIND, FORMAT)
+        check_format(file, header, KIND, FORMAT, *older)
         return read(arrays)
     except ArchiveError as error:
         raise SelectorError(f"{error}; {REMEDY}") from None

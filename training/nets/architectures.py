@@ -6,8 +6,8 @@ from lightgesture.features.find import locator, refiner
 from lightgesture.features.net.network import WEIGHTED, Node, Shape, infer_shapes, taps
 from lightgesture.models import cnn
 
-LOCATOR_INPUT: Shape = (128, 160, 3)
-"""The working picture of 160 × 120, filled up to multiples of 16 as `features.find.locator` does."""
+LOCATOR_INPUT: Shape = (256, 320, 3)
+"""A picture of 320 × 240, filled up to multiples of 32 as `features.find.locator` does."""
 REFINER_INPUT: Shape = (32, 32, 4)
 """A window: standardised blue, green, red and luma."""
 LOCATOR_OUTPUTS = (locator.HEAT, locator.EDGES)
@@ -36,7 +36,7 @@ def merged(name: str, coarse: str, fine: str, channels: int) -> list[Node]:
 
 
 def locator_nodes(channels: tuple[int, int, int, int, int] = (8, 16, 32, 64, 96)) -> tuple[Node, ...]:
-    """Grids of 4, 8 and 16 pixels and back to 4, where heat and edges are read.
+    """Grids of 8, 16 and 32 pixels and back to 8, where heat and edges are read.
 
     channels: of the two layers of the stem and of the three grids, fine to coarse; time grows with their squares.
     """
@@ -45,7 +45,7 @@ def locator_nodes(channels: tuple[int, int, int, int, int] = (8, 16, 32, 64, 96)
     return (
         Node("stem1", "conv", (locator.INPUT,), first, 3, 2, "relu6"),
         Node("stem2", "conv", ("stem1",), second, 3, 2, "relu6"),
-        Node("stem3", "conv", ("stem2",), fine, 3, 1, "relu6"),
+        Node("stem3", "conv", ("stem2",), fine, 3, 2, "relu6"),
         *residual("fine1", "stem3", fine),
         *separable("middle1", "fine1", middle, stride=2),
         *residual("middle2", "middle1_point", middle),

@@ -24,9 +24,9 @@ Random = np.random.Generator
 
 WINDOWS: Final = 8
 """Of one picture."""
-REAL_SHARE: Final = 0.32
-EMPTY_SHARE: Final = 0.08
-DIVER_SHARE: Final = 0.25
+REAL_SHARE: Final = 0.24
+EMPTY_SHARE: Final = 0.06
+DIVER_SHARE: Final = 0.45
 """Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
 would be of divers where there are none."""
 HAND, HARD, BESIDE, FACE = 0.55, 0.85, 0.93, 0.97
@@ -62,7 +62,7 @@ def hard_regions(
     net, stage, found = Locator(locator), ColourStage(), []
     for picture in pictures:
         colour = stage.process(picture.image)
-        maps = net.process(colour.picture, net.table(colour.picture))
+        maps = net.process(colour, net.table(colour.picture))
         boxes = find_peaks(maps, MOST_PEAKS, LEAST_HEAT).boxes * np.tile(
             np.array(colour.scale, np.float32), 2
         )

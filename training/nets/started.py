@@ -1,6 +1,7 @@
 """A net that goes on learning from the integers of a trained one. Needs torch."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -16,12 +17,13 @@ STARTED: Final = 0.4
 
 
 def start_from(module: TorchNetwork, network: IntegerNetwork, batch: Mapping[str, Tensor]) -> None:
-    """Give the module the weights of a network of the same nodes, changed in place.
+    """Give the module the weights of a network of the same layers, changed in place; strides and the size of pictures
+    may be others, since what edges and fingers look like changes little with them.
 
     batch: typical inputs. The integers hold no batch normalisation; each is set to what it would be if it changed
-    nothing on this batch, so that the net begins where the other one ended. Raises UsageError for other nodes.
+    nothing on this batch, so that the net begins where the other one ended. Raises UsageError for other layers.
     """
-    if module.nodes != network.nodes or module.inputs != dict(network.inputs):
+    if _layers(module.nodes) != _layers(network.nodes) or not _same_shapes(module, network):
         raise UsageError("the file to start from holds a net of other layers; start from one of this version")
     tensors = dict(batch)
     with torch.no_grad():
@@ -31,6 +33,18 @@ def start_from(module: TorchNetwork, network: IntegerNetwork, batch: Mapping[str
             if node.name in module.norms:
                 _set_norm(module, network, node, tensors)
             tensors[node.name] = module.compute(node, [tensors[name] for name in node.inputs])
+
+
+def _layers(nodes: Sequence[Node]) -> list[Node]:
+    """The nodes without their strides."""
+    return [replace(node, stride=1) for node in nodes]
+
+
+def _same_shapes(module: TorchNetwork, network: IntegerNetwork) -> bool:
+    """Whether each layer of the module has as many weights as that of the network."""
+    return all(
+        layer.weight.numel() == network.weights[name].weights.size for name, layer in module.layers.items()
+    )
 
 
 def _load(module: TorchNetwork, network: IntegerNetwork, node: Node) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from lightgesture.features.archive import read_archive
-from lightgesture.features.find.selector_file import SelectorError, load_learned
+from lightgesture.features.find.selector_file import LOCATOR, REFINER, SelectorError, load_nets
 from lightgesture.features.net.file import network_from
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.model_files import write_networks
@@ -22,8 +22,6 @@ Progress = Callable[[str], None]
 
 NETS: Final = "nets.npz"
 """Both nets in the folder of a training."""
-LOCATOR, REFINER = "locator", "refiner"
-"""Beginnings of the names of their arrays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +68,7 @@ def learn_nets(
     from lightgesture.training.nets.refiner_samples import RefinerSamples, hard_regions
 
     divers = RealDivers(material.divers, material.hands) if material.divers else None
-    begun = None if settings.start is None else load_learned(settings.start)
-    first, second = (begun.locator, begun.refiner) if begun else (None, None)
+    first, second = (None, None) if settings.start is None else load_nets(settings.start)
     steps, precision = settings.locator_steps, settings.precision
     samples = LocatorSamples(material.frames, material.empty, composed, divers)
     locator = train_locator(samples, steps, precision, first, seed, folder / "locator.pt", progress)

@@ -10,9 +10,11 @@ from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import (
     BUNDLED,
     FORMAT,
+    OLDER_NETS,
     SelectorError,
     load_classical,
     load_learned,
+    load_nets,
 )
 from lightgesture.features.find.trees import FlatTrees, Trees, evaluate
 from lightgesture.training.model_files import write_classical, write_selector
@@ -137,6 +139,15 @@ def test_a_pickle_is_never_opened(tmp_path):
     np.savez(path, header=_header(), extents_value=np.array([object()], dtype=object))
     with pytest.raises(SelectorError, match=r"evil\.npz"):
         load_classical(path)
+
+
+def test_nets_of_another_stride_can_learn_on_and_do_nothing_else(tmp_path):
+    _write(tmp_path / "old.npz", header=_header(format=OLDER_NETS))
+    with pytest.raises(SelectorError, match=r"old\.npz: has format 3, this version reads 4; make it again"):
+        load_learned(tmp_path / "old.npz")
+    locator, refiner = load_nets(tmp_path / "old.npz")
+    bundled = load_learned()
+    assert (locator.nodes, refiner.nodes) == (bundled.locator.nodes, bundled.refiner.nodes)
 
 
 def test_trees_that_point_outside_are_refused():

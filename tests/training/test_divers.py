@@ -1,6 +1,7 @@
 """Real divers in the trainings: what a table says, what copies look like, and nets that go on from integers."""
 
 import json
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -133,6 +134,27 @@ def test_a_net_goes_on_where_the_integers_ended():
             assert (
                 np.abs(own - wanted[output].reshape(own.shape)).mean() < 0.02 * np.abs(wanted[output]).mean()
             )
+
+
+def test_a_net_goes_on_at_another_stride_but_not_with_other_layers():
+    torch = pytest.importorskip("torch")
+    from lightgesture.errors import UsageError
+    from lightgesture.features.find.selector_file import load_learned
+    from lightgesture.training.nets.architectures import LOCATOR_OUTPUTS, locator_nodes
+    from lightgesture.training.nets.started import start_from
+    from lightgesture.training.nets.torch_network import TorchNetwork
+
+    network = load_learned().locator
+    (name,) = network.inputs
+    finer = [replace(node, stride=1) if node.name == "stem3" else node for node in locator_nodes()]
+    module = TorchNetwork({name: (128, 160, 3)}, finer, LOCATOR_OUTPUTS)
+    start_from(module, network, {name: torch.zeros(2, 3, 128, 160)})
+    own, scales = network.weights["stem3"].weights, network.weights["stem3"].scales
+    wanted = (own * scales[:, None, None, None]).transpose(0, 3, 1, 2)
+    np.testing.assert_allclose(module.layers["stem3"].weight.detach().numpy(), wanted, atol=1e-6)
+    wider = TorchNetwork({name: (128, 160, 3)}, locator_nodes((8, 16, 32, 64, 100)), LOCATOR_OUTPUTS)
+    with pytest.raises(UsageError, match="a net of other layers"):
+        start_from(wider, network, {name: torch.zeros(2, 3, 128, 160)})
 
 
 def test_the_history_of_a_small_net_is_carried_on(tmp_path):

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from lightgesture.features.find.locator import DETAIL
 from lightgesture.training.nets.locator_samples import LocatorSamples, make_targets, warp
 from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, hard_regions, target_edges
 from lightgesture.training.pictures import light
@@ -25,8 +26,8 @@ def test_a_drawn_ellipse_stays_in_its_box(seed):
     rng = np.random.default_rng(seed)
     image, hands, _, _ = warp(a_picture(), rng, (0.6, 1.5))
     x, y, width, height = cv2.boundingRect((image[..., 0] > 127).astype(np.uint8))
-    seen = np.clip(hands[0], 0, (160, 120, 160, 120))
-    assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=2.0)
+    seen = np.clip(hands[0], 0, (160, 120, 160, 120)) * DETAIL
+    assert (x, y, x + width, y + height) == pytest.approx(tuple(seen), abs=3.0)
 
 
 def test_boxes_and_pictures_do_not_drift_apart():
@@ -40,7 +41,7 @@ def test_boxes_and_pictures_do_not_drift_apart():
         if corners.min() < 3 or corners[2] > 157 or corners[3] > 117:
             continue  # the border may continue what it cuts
         weights = np.clip(image[..., 0].astype(np.float64) - 60, 0, None)
-        y, x = np.mgrid[0:120, 0:160] + 0.5
+        y, x = (np.mgrid[0:240, 0:320] + 0.5) / DETAIL
         seen = np.array([(weights * x).sum(), (weights * y).sum()]) / weights.sum()
         offsets.append(seen - (corners[:2] + corners[2:]) / 2)
     assert len(offsets) > 20
@@ -56,8 +57,8 @@ def test_samples_repeat_for_a_seed(seed):
     np.testing.assert_array_equal(first, again)
     for name in ("heat", "weight", "box", "box_weight"):
         np.testing.assert_array_equal(getattr(maps, name), getattr(same, name))
-    assert first.shape == (128, 160, 3)
-    assert not first[120:].any()
+    assert first.shape == (256, 320, 3)
+    assert not first[240:].any()
     assert np.abs(first).max() <= 3
 
     false = np.array([[10, 10, 30, 40.0]], np.float32)
@@ -119,12 +120,12 @@ def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
 
     pictures, empty, said = [a_picture()], [a_picture(())], []
     locator = train_locator(
-        LocatorSamples(pictures, empty, pictures), 2, 0, tmp_path / "locator.pt", said.append
+        LocatorSamples(pictures, empty, pictures), 2, "float32", None, 0, tmp_path / "locator.pt", said.append
     )
     windows = RefinerSamples(*(hard_regions(part, locator) for part in (pictures, empty, pictures)))
-    refiner = train_refiner(windows, 2, 0, tmp_path / "refiner.pt", said.append)
+    refiner = train_refiner(windows, 2, "float32", None, 0, tmp_path / "refiner.pt", said.append)
     assert len(said) == 2
-    again = train_refiner(windows, 2, 0, tmp_path / "refiner.pt", said.append)
+    again = train_refiner(windows, 2, "float32", refiner, 0, tmp_path / "refiner.pt", said.append)
     assert len(said) == 2
     for name, weights in refiner.weights.items():
         np.testing.assert_array_equal(again.weights[name].weights, weights.weights)

@@ -9,8 +9,9 @@ import numpy as np
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.checkpoints import peak_memory_mib
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
+from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.nets import RegionTraining
-from lightgesture.training.regions.region_pictures import COMPOSED, NEGATIVE_SETS, ONE_IN, UNSEEN, Material
+from lightgesture.training.regions.region_pictures import NEGATIVE_SETS, ONE_IN
 
 
 def write_card(
@@ -18,21 +19,24 @@ def write_card(
     seed: int,
     without: LeftOut,
     settings: RegionTraining,
-    material: Material,
+    pictures: Pictures,
     seconds: float,
 ) -> None:
     """Write the card of the selector's file `out` beside it. seconds: of the training."""
     import sklearn
     import torch
 
+    both = pictures.for_nets, pictures.for_trees
     card = {
         "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
         "data": {
-            "whole frames (webcam/train, single pictures of frames/subhi)": len(material.frames),
-            "hands cut out of hands/train": len(material.hands),
-            "underwater frames without a hand": len(material.empty),
-            "real divers (divers)": len(material.divers),
-            "composed pictures": COMPOSED + UNSEEN,
+            "whole frames (webcam/train, single pictures of frames/subhi)": sum(
+                len(part.frames) for part in both
+            ),
+            "hands cut out of hands/train": sum(len(part.hands) for part in both),
+            "underwater frames without a hand": sum(len(part.empty) for part in both),
+            "real divers (divers)": sum(len(part.divers) for part in both),
+            "composed pictures": len(pictures.composed) + len(pictures.unseen),
             "sets of negatives used": list(NEGATIVE_SETS),
             "kept from the nets, for the trees": f"one in {ONE_IN} sources",
         },

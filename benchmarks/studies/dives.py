@@ -1,0 +1,121 @@
+"""The finder on dives that it has not seen: `python -m lightgesture.benchmarks.studies.dives --parts DIR --start FILE`.
+
+The dives of the real divers are dealt into folds. For each fold a finder is trained from the rest, nets and trees, and
+finds and reads the pictures of its own fold; the tables have every picture once. The finder must start from a file that
+has seen no diver, or from random weights. The reader is the model that is named, which may have seen all of them: what
+these tables say of reading, of hands in given boxes most of all, counts for models alone that have not.
+
+What is done lies in the folder of parts, and the same command goes on there: composed pictures, the nets of each fold
+and its selector, `foldN.npz`, which `evaluate divers --dive` and `decode --selector` take.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from lightgesture.benchmarks.divers.pictures import DiverFrame, read_divers
+from lightgesture.benchmarks.divers.report import evaluate_folds, save_rows
+from lightgesture.benchmarks.divers.scoring import DiverMethod
+from lightgesture.benchmarks.methods import reading_method
+from lightgesture.benchmarks.progress import progress_bar
+from lightgesture.benchmarks.studies.options import add_data_argument, print_and_write, run_command
+from lightgesture.config.parsers import positive, whole
+from lightgesture.console import say
+from lightgesture.features.find.selector_file import load_classical
+from lightgesture.models import load_classifier
+from lightgesture.models.loading import DEFAULT
+from lightgesture.training.commands.train import PRECISIONS
+from lightgesture.training.datasets import find_data, fold_of
+from lightgesture.training.model_files import write_selector
+from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
+from lightgesture.training.pool.divers import SOURCE
+from lightgesture.training.pool.left_out import LeftOut
+from lightgesture.training.regions.learned import Pictures, learn_choice, read_pictures
+from lightgesture.training.regions.nets import RegionTraining
+
+FOLDS: Final = 5
+"""Parts into which the dives are dealt."""
+STEPS: Final = 1600
+"""Of the locator of a fold, a third of those of the shipped one."""
+REFINER_SHARE: Final = 0.8
+"""Steps of the refiner over those of the locator, as `train regions` has them."""
+
+
+def fold_of_dive(dive: str) -> int:
+    """The fold that holds a dive out, 0 to `FOLDS` - 1."""
+    return fold_of(f"{SOURCE} {dive}", FOLDS)
+
+
+def run(args: argparse.Namespace) -> None:
+    """Train what is missing, then find and read every picture by the finder that has not seen its dive."""
+    need_torch()
+    data, parts = find_data(args.data), Path(args.parts)
+    start = None if args.start is None else Path(args.start)
+    settings = RegionTraining(args.steps, round(REFINER_SHARE * args.steps), args.precision, start)
+    pictures = read_pictures(data, LeftOut(), args.seed, args.jobs, parts, say)
+    classifier = load_classifier(args.model)
+    frames = read_divers(data)
+    folds: list[tuple[DiverMethod, list[DiverFrame]]] = []
+    for fold in args.fold or range(FOLDS):
+        file = _selector(pictures, parts, fold, args.seed, settings)
+        name = f"fold {fold}"
+        method = DiverMethod(name, reading_method(name, classifier, str(file)), classifier)
+        folds.append((method, [frame for frame in frames if fold_of_dive(frame.dive) == fold]))
+    report, scored = evaluate_folds(folds, progress_bar)
+    save_rows(parts, scored.hands, scored.frames)
+    print_and_write(
+        report.tables, args.out, {"steps": args.steps, "start": settings.origin, "seed": args.seed}
+    )
+
+
+def _selector(pictures: Pictures, parts: Path, fold: int, seed: int, settings: RegionTraining) -> Path:
+    """The file of a finder that has not seen the dives of a fold."""
+    file = parts / f"fold{fold}.npz"
+    told = {
+        "seed": seed,
+        "fold": fold,
+        "settings": repr(replace(settings, start=None)),
+        "start": settings.origin,
+    }
+    folder = checkpoint_folder(file, told)
+    if not file.is_file():
+        say(f"fold {fold}: training a finder without its dives")
+        rest = pictures.without_divers(
+            lambda source: source.startswith(f"{SOURCE} ") and fold_of(source, FOLDS) == fold
+        )
+        write_selector(load_classical(), learn_choice(rest, folder, seed, settings, say), file)
+    return file
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command line; returns the exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m lightgesture.benchmarks.studies.dives",
+        description="The finder on dives of real divers that it has not seen.",
+    )
+    add_data_argument(parser)
+    parser.add_argument(
+        "--parts", required=True, metavar="DIR", help="folder of what is composed and trained"
+    )
+    parser.add_argument("--start", metavar="FILE", help="selector from which the nets go on; it saw no diver")
+    parser.add_argument(
+        "--steps", type=positive, default=STEPS, metavar="N", help=f"of each locator (default {STEPS})"
+    )
+    parser.add_argument(
+        "--fold", type=whole, action="append", metavar="N", help="only this one; may be repeated"
+    )
+    parser.add_argument("--model", default=DEFAULT, help="reads what is found (default cnn)")
+    parser.add_argument("--precision", choices=PRECISIONS, default="float32", help="see train regions")
+    parser.add_argument(
+        "--jobs", type=positive, default=1, metavar="N", help="processes that compose (default 1)"
+    )
+    parser.add_argument("--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default 0)")
+    parser.add_argument("--out", metavar="FILE.json", help="write rows and settings here, too")
+    return run_command(parser, argv, run)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,6 +1,6 @@
 """Hand or not, and how far it reaches: a second look at each place through a tiny int8 net on a window of 32 × 32.
 
-The locator sees a person at 160 × 120 pixels; a window shows one place at the resolution of the camera. A box of a
+The locator sees a person at 320 × 240 pixels and on a grid of eight; a window shows one place as it is. A box of a
 track, moved on by its filter, can be looked at just as well, so a followed hand costs no search.
 """
 

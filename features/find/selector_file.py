@@ -19,8 +19,9 @@ from lightgesture.features.net.network import IntegerNetwork
 KIND: Final = "selector"
 FORMAT: Final = 4
 """Version of the file; raised whenever an older reader would misread a newer file."""
-OLDER_NETS: Final = 3
-"""Version whose nets have the layers of these, with another stride: they can learn on, and nothing else."""
+OLDER: Final = 3
+"""Version whose locator saw pictures of half the size: its nets can learn on and nothing else; the classical choice is as
+here."""
 BUNDLED: Final = Path(__file__).resolve().parents[1] / "data" / "selector.npz"
 BANK_NUMBERS: Final = 2
 """Numbers of a region that come from the bank of outlines."""
@@ -77,7 +78,7 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
             bank_from(arrays, "bank"),
         )
 
-    return _read(path, CLASSICAL_PARTS, read)
+    return _read(path, CLASSICAL_PARTS, read, OLDER)
 
 
 def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
@@ -100,7 +101,7 @@ def load_nets(path: str | os.PathLike[str]) -> tuple[IntegerNetwork, IntegerNetw
     def read(arrays: Mapping[str, NDArray[Any]]) -> tuple[IntegerNetwork, IntegerNetwork]:
         return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
 
-    return _read(path, (LOCATOR, REFINER), read, OLDER_NETS)
+    return _read(path, (LOCATOR, REFINER), read, OLDER)
 
 
 def _read(

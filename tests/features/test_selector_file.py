@@ -10,7 +10,7 @@ from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import (
     BUNDLED,
     FORMAT,
-    OLDER_NETS,
+    OLDER,
     SelectorError,
     load_classical,
     load_learned,
@@ -141,10 +141,11 @@ def test_a_pickle_is_never_opened(tmp_path):
         load_classical(path)
 
 
-def test_nets_of_another_stride_can_learn_on_and_do_nothing_else(tmp_path):
-    _write(tmp_path / "old.npz", header=_header(format=OLDER_NETS))
+def test_of_a_file_of_before_nets_can_learn_on_and_the_classical_choice_serves(tmp_path):
+    _write(tmp_path / "old.npz", header=_header(format=OLDER))
     with pytest.raises(SelectorError, match=r"old\.npz: has format 3, this version reads 4; make it again"):
         load_learned(tmp_path / "old.npz")
+    assert load_classical(tmp_path / "old.npz").pairs.base == load_classical().pairs.base
     locator, refiner = load_nets(tmp_path / "old.npz")
     bundled = load_learned()
     assert (locator.nodes, refiner.nodes) == (bundled.locator.nodes, bundled.refiner.nodes)

@@ -1,0 +1,82 @@
+"""The finder on unseen dives: no fold learns from its own dives, and every picture is found in once."""
+
+import csv
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from lightgesture.benchmarks.divers.rows import FRAMES_FILE
+from lightgesture.benchmarks.studies import dives
+from lightgesture.features.find.selector_file import load_learned
+from lightgesture.training.pictures.boxed import BoxedPicture
+from lightgesture.training.pictures.real_divers import RealDiver
+from lightgesture.training.regions.learned import Pictures
+from lightgesture.training.regions.region_pictures import Material
+
+DIVES = [f"reef_{number}" for number in range(12)]
+
+
+def of_dive(dive):
+    image = np.zeros((24, 32, 3), np.uint8)
+    return RealDiver(BoxedPicture(image, sources=frozenset({f"divers {dive}"})), False)
+
+
+@pytest.fixture(name="pictures")
+def _pictures():
+    nets, trees = (Material([], [], [], [of_dive(dive) for dive in own]) for own in (DIVES[::2], DIVES[1::2]))
+    return Pictures(nets, trees, [], [])
+
+
+@pytest.fixture(name="data")
+def _data(tmp_path):
+    folder = tmp_path / "data" / "divers"
+    rows = []
+    for dive in DIVES:
+        rows.append({"file": f"frames/reef/{dive}.png", "sequence": dive, "kind": ""})
+        path = folder / rows[-1]["file"]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(cv2.imencode(".png", np.full((120, 160, 3), 90, np.uint8))[1].tobytes())
+    with (folder / "boxes.csv").open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+    return tmp_path / "data"
+
+
+def test_each_fold_learns_from_all_dives_but_its_own(monkeypatch, tmp_path, data, pictures):
+    pytest.importorskip("torch")
+    learnt = []
+
+    def learn(given, folder, seed, settings, progress):
+        del folder, seed, progress
+        sources = (one.picture.sources for part in (given.for_nets, given.for_trees) for one in part.divers)
+        learnt.append({source.removeprefix("divers ") for own in sources for source in own})
+        assert (settings.locator_steps, settings.refiner_steps) == (10, 8)
+        return load_learned()
+
+    monkeypatch.setattr(dives, "learn_choice", learn)
+    monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
+    parts, out = tmp_path / "parts", tmp_path / "out.json"
+    arguments = ["--data", str(data), "--parts", str(parts), "--steps", "10", "--out", str(out)]
+    assert dives.main(arguments) == 0
+    assert len(learnt) == dives.FOLDS
+    for fold, own in enumerate(learnt):
+        assert own == {dive for dive in DIVES if dives.fold_of_dive(dive) != fold}
+        assert (parts / f"fold{fold}.npz").is_file()
+    with (parts / FRAMES_FILE).open(encoding="utf-8") as stream:
+        assert sorted(row["dive"] for row in csv.DictReader(stream)) == sorted(DIVES)
+    assert json.loads(out.read_text())["settings"] == {"steps": 10, "start": None, "seed": 0}
+    assert dives.main(arguments) == 0
+    assert len(learnt) == dives.FOLDS, "what is done is not done again"
+
+
+def test_a_folder_of_another_training_is_refused(monkeypatch, tmp_path, data, pictures, capsys):
+    pytest.importorskip("torch")
+    monkeypatch.setattr(dives, "learn_choice", lambda *_: load_learned())
+    monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
+    arguments = ["--data", str(data), "--parts", str(tmp_path / "parts"), "--fold", "1"]
+    assert dives.main([*arguments, "--steps", "10"]) == 0
+    assert dives.main([*arguments, "--steps", "20"]) == 2
+    assert "holds parts of another training (locator_steps 10 and not 20" in capsys.readouterr().err

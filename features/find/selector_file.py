@@ -20,8 +20,8 @@ KIND: Final = "selector"
 FORMAT: Final = 4
 """Version of the file; raised whenever an older reader would misread a newer file."""
 OLDER: Final = 3
-"""Version whose locator saw pictures of half the size: its nets can learn on and nothing else; the classical choice is as
-here."""
+"""Version whose locator saw pictures of half the size: its nets can learn on and nothing else; the classical choice is
+as here."""
 BUNDLED: Final = Path(__file__).resolve().parents[1] / "data" / "selector.npz"
 BANK_NUMBERS: Final = 2
 """Numbers of a region that come from the bank of outlines."""

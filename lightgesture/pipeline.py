@@ -1,36 +1,36 @@
 """Frames in, records out: a front end that reads signs, and the decoder of what they say."""
 
 import os
-from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
 from copy import copy
 from dataclasses import replace
 from datetime import datetime
-from functools import partial
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from numpy.typing import NDArray
 
-from lightgesture.features.colour import ColourStage
-from lightgesture.features.find.selector import SelectorName, load_selector
-from lightgesture.features.profile import load_profile
+from lightgesture.features.find.selector import SelectorName
 from lightgesture.features.types import Image
 from lightgesture.front_end import FrontEnd, StageClock
-from lightgesture.fsm import Decoder, Event, Grammar, Instruction, Rejected, Signs, load_grammar
+from lightgesture.fsm import Decoder, Event, Instruction, Rejected, Signs
 from lightgesture.fsm.language.settings import SENTENCE, Rule
-from lightgesture.hands import HandReader, ReadingSettings, ReadingStage
-from lightgesture.hands.memory import ReadingMemory, memory_for_hold, memory_for_sentences
+from lightgesture.halves import (
+    HANDS,
+    CardOptions,
+    DecoderOptions,
+    FrontOptions,
+    HandOptions,
+    make_decoder,
+    make_front,
+)
 from lightgesture.hands.pictures import PictureSink, with_text
-from lightgesture.models import check_classes, load_classifier
+from lightgesture.models import check_classes
 from lightgesture.models.loading import DEFAULT
 from lightgesture.records import FrameRecord, Record, SummaryRecord, utc_text
 
 if TYPE_CHECKING:
     from lightgesture.cards import FrontEndName
     from lightgesture.features.tags.detector import DetectorName
-
-HANDS: Final = "hands"
-"""The front end that reads bare hands, the default."""
 
 
 class OneBlasThread:
@@ -110,57 +110,13 @@ class Pipeline:
         frames: bool = True,
         debug: PictureSink | None = None,
     ) -> None:
-        of_hands = {
-            "model": model != DEFAULT,
-            "selector": selector != "learned",
-            "profile": profile is not None,
-            "threshold": threshold is not None,
-            "rotate": rotate != 0,
-        }
-        of_cards = {"tag_detector": tag_detector != "aruco", "shapes": shapes is not None}
-        if front is not None:
-            of_any = {"front_end": front_end != HANDS, "mirrored": mirrored}
-            _refuse("another front end", {**of_any, **of_hands, **of_cards})
-        else:
-            _refuse(f"the front end {front_end}", of_cards if front_end == HANDS else of_hands)
-        if decoder is not None:
-            of_decoder = {
-                "rule": rule,
-                "hold": hold,
-                "hold_seconds": hold_seconds,
-                "caution": caution,
-                "grammar": grammar,
-            }
-            _refuse("another decoder", {name: value is not None for name, value in of_decoder.items()})
-        if decoder is None:
-            decoder = Decoder(
-                _language(grammar, front_end),
-                rule=rule,
-                hold=hold,
-                hold_seconds=hold_seconds,
-                caution=caution,
-                source=source,
-            )
-        elif source is not None:
-            decoder = decoder.for_stream(source)
-        if front is None and front_end != HANDS:
-            from lightgesture.cards import make_card_reader
-
-            front = make_card_reader(
-                decoder.grammar, front_end, detector=tag_detector, shapes=shapes, mirrored=mirrored
-            )
-        if front is None:
-            front = HandReader(
-                ReadingStage(load_classifier(model), _reading(threshold, decoder.rule)),
-                find=load_selector(selector),
-                colour=ColourStage(profile=None if profile is None else load_profile(profile)),
-                memory=partial(_memory, decoder.rule, decoder.hold_frames, decoder.hold_seconds),
-                mirrored=mirrored,
-                rotate=rotate,
-            )
-        self.front, self.decoder = front, decoder
+        language = DecoderOptions(rule, hold, hold_seconds, caution, grammar)
+        hands = HandOptions(model, selector, profile, threshold, rotate)
+        reading = FrontOptions(front_end, mirrored, hands, CardOptions(tag_detector, shapes))
+        self.decoder = make_decoder(decoder, language, front_end, source)
+        self.front = make_front(front, reading, self.decoder)
         self._frames, self._one_thread = frames, OneBlasThread()
-        self._begin(decoder.source, debug)
+        self._begin(self.decoder.source, debug)
 
     def __enter__(self) -> Self:
         return self
@@ -281,30 +237,6 @@ class Pipeline:
         return [replace(event, utc=utc_text(self.start_utc, event.time_s)) for event in events]
 
 
-def _language(file: str | os.PathLike[str] | None, front_end: "FrontEndName") -> Grammar:
-    """The grammar of a file, None for the bundled one, as the front end needs it."""
-    language = load_grammar(file)
-    if front_end == HANDS:
-        return language
-    # Who reads hands need not wait for what reads cards.
-    from lightgesture.cards import language_of_cards
-
-    return language_of_cards(language, front_end)
-
-
-def _memory(rule: Rule, hold_frames: int | None, hold_seconds: float | None) -> ReadingMemory:
-    """What remembers the readings of a hand, for a rule and its hold."""
-    if rule == SENTENCE and hold_seconds is not None:
-        return memory_for_sentences(hold_seconds)
-    return memory_for_hold(hold_frames, hold_seconds)
-
-
-def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:
-    """How hands are read for a rule: "sentence" wants to know where the extents of a hand differ."""
-    settings = ReadingSettings(extents="mean" if rule == SENTENCE else "clearest")
-    return settings if threshold is None else replace(settings, token_probability=threshold)
-
-
 class _ClosedFront(FrontEnd):
     """Stands in the place of one that was let go."""
 
@@ -313,10 +245,3 @@ class _ClosedFront(FrontEnd):
 
     def process(self, image: Image, time_s: float) -> Signs:  # noqa: ARG002 - those of its base
         raise ValueError("this pipeline is closed; make another")
-
-
-def _refuse(half: str, is_given: Mapping[str, bool]) -> None:
-    """ValueError for options that were given and that this half of the pipeline does not have."""
-    names = [name for name, given in is_given.items() if given]
-    if names:
-        raise ValueError(f"{', '.join(names)}: of no effect beside {half}; leave out either")

@@ -74,7 +74,7 @@ def test_a_pipeline_for_another_stream_loads_nothing_and_remembers_nothing(monke
         loaded.append(model)
         return load_classifier(model)
 
-    monkeypatch.setattr("lightgesture.pipeline.load_classifier", load)
+    monkeypatch.setattr("lightgesture.halves.load_classifier", load)
     with open_source(SAMPLE) as source:
         frames = [frame for frame, _ in zip(source, range(24), strict=False)]
     first = Pipeline(source="first", hold=5)

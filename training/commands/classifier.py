@@ -13,8 +13,6 @@ from lightgesture.errors import ExitStatus, UsageError
 if TYPE_CHECKING:
     from lightgesture.training.nets.cnn import CnnTraining
 
-LANDMARKS: Final = 0.3
-"""Default of `CnnTraining.landmarks`, which the commands do not import for their help."""
 MOST: Final = 10.0
 """Largest weight of the landmarks."""
 
@@ -64,7 +62,7 @@ def add_data_arguments(parser: argparse.ArgumentParser) -> None:
         type=whole,
         metavar="N",
         help="rendered hands in the poses of real ones, if `world_NAME.npz` beside the manifest NAME.csv tells their "
-        "joints (default: 20000)",
+        "joints (default: none)",
     )
     parser.add_argument(
         "--seed", type=whole, default=0, metavar="N", help="of all that is drawn (default: 0)"
@@ -77,10 +75,9 @@ def add_landmarks_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--landmarks",
         type=_weight,
-        default=LANDMARKS,
         metavar="WEIGHT",
         help="of the 21 landmarks that a net learns besides where they are known (column lm, rendered hands); the "
-        f"model holds nothing of it (default: {LANDMARKS:g}; 0: classes alone)",
+        "model holds nothing of it (0.3 is a good one; default: classes alone)",
     )
 
 
@@ -114,8 +111,9 @@ def net_training(args: argparse.Namespace) -> "CnnTraining":
         seed=args.seed,
         jobs=args.jobs,
         precision=args.precision,
-        landmarks=args.landmarks,
     )
+    if args.landmarks is not None:
+        training = replace(training, landmarks=args.landmarks)
     pool = training.pool
     if args.copies is not None:
         pool = replace(pool, copies=args.copies)

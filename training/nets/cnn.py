@@ -67,7 +67,7 @@ class CnnTraining:
     """Of each of these."""
     precision: "Precision" = "float32"
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
-    landmarks: float = 0.3
+    landmarks: float = 0.0
     """Weight of a hand's landmarks, which all nets learn besides where they are known, 0 to 10; 0: they learn none."""
     pool: PoolSettings = field(default_factory=PoolSettings)
     """What is drawn."""

@@ -31,7 +31,7 @@ class PoolSettings:
     """How often regions that are no hand are drawn from each picture, 1 to 100."""
     rendered: int = 12000
     """Rendered hands beside the real ones, of the signs that both know."""
-    posed: int = 20000
+    posed: int = 0
     """Rendered hands in the poses of real ones whose joints are known, seen from up to 75 degrees; 0 for none."""
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(

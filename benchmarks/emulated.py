@@ -17,37 +17,21 @@ from pathlib import Path
 from typing import Final
 
 import lightgesture
-from lightgesture.benchmarks.instructions import FOLLOWED, SEARCHED, WARM_UP, write_frames
+from lightgesture.benchmarks.instructions import FOLLOWED, SEARCHED, write_frames
 from lightgesture.benchmarks.tables import Cell, Table, to_text
 from lightgesture.cli import exit_status
 from lightgesture.console import print_line
 from lightgesture.errors import ExitStatus, InputError
 
 PROGRAM: Final = """
-import ctypes, platform, sys
+import ctypes, itertools, pathlib, platform, sys
 sys.path.insert(0, {root!r})
-import cv2, numpy
-from lightgesture.pipeline import Pipeline
-from lightgesture.sources import DEFAULT_FPS
-cv2.setNumThreads(1)
+from lightgesture.benchmarks.instructions import run_counted
 calls = {{"aarch64": 172, "armv7l": 20, "x86_64": 39}}
-system = ctypes.CDLL(None).syscall
-def mark(number):
-    system(calls[platform.machine()], 0x6c67, number)
-frames = numpy.load({frames!r})
-pipeline = Pipeline()
-for index, frame in enumerate(frames[:{warm_up}]):
-    pipeline.process(frame, index / DEFAULT_FPS)
-mark(0)
-for frame in frames[:{searched}]:
-    pipeline.recognize(frame)
-mark(1)
-stream = pipeline.for_stream(None)
-for index, frame in enumerate(frames):
-    if index == {warm_up}:
-        mark(2)
-    stream.process(frame, index / DEFAULT_FPS)
-mark(3)
+system, numbers = ctypes.CDLL(None).syscall, itertools.count()
+def mark():
+    system(calls[platform.machine()], 0x6c67, next(numbers))
+run_counted(pathlib.Path({frames!r}), mark, mark)
 """
 """What the emulated Python runs. An environment may not reach it, so that paths are written in."""
 MARK: Final = re.compile(r"^LGMARK (\d+) thread \d+ all (\d+)$", re.MULTILINE)
@@ -69,12 +53,7 @@ def count(emulator: Sequence[str]) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         frames = Path(folder, "frames.npy")
         write_frames(frames)
-        program = PROGRAM.format(
-            root=str(Path(lightgesture.__file__).parents[1]),
-            frames=str(frames),
-            warm_up=WARM_UP,
-            searched=SEARCHED,
-        )
+        program = PROGRAM.format(root=str(Path(lightgesture.__file__).parents[1]), frames=str(frames))
         try:
             run = subprocess.run(
                 [*emulator, "-c", program], capture_output=True, text=True, errors="replace", check=False

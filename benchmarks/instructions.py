@@ -13,7 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Final
@@ -55,8 +55,12 @@ def write_frames(path: Path) -> None:
     np.save(path, np.array(frames))
 
 
-def run_counted(path: Path) -> None:
-    """What the counted process does. Two calls of the system that nothing else makes mark each part for callgrind."""
+def run_counted(
+    path: Path, begin: Callable[[], object] = os.getppid, end: Callable[[], object] = os.getpgrp
+) -> None:
+    """What the counted process does with the frames in a file: the pictures that are searched, then the frames that are
+    followed. `begin` and `end` are called before and after each; callgrind's are calls of the system that nothing else
+    makes."""
     import cv2
     import numpy as np
 
@@ -67,16 +71,16 @@ def run_counted(path: Path) -> None:
     pipeline = Pipeline()
     for index, frame in enumerate(frames[:WARM_UP]):
         pipeline.process(frame, index / DEFAULT_FPS)
-    os.getppid()
+    begin()
     for frame in frames[:SEARCHED]:
         pipeline.recognize(frame)
-    os.getpgrp()
+    end()
     stream = pipeline.for_stream(None)
     for index, frame in enumerate(frames):
         if index == WARM_UP:
-            os.getppid()
+            begin()
         stream.process(frame, index / DEFAULT_FPS)
-    os.getpgrp()
+    end()
 
 
 def count(folder: Path) -> dict[str, int]:

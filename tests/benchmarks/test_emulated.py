@@ -3,9 +3,10 @@
 import shlex
 import sys
 
+import numpy as np
 import pytest
 
-from lightgesture.benchmarks import emulated
+from lightgesture.benchmarks import emulated, instructions
 from lightgesture.benchmarks.emulated import count, read_marks
 
 PRINTED = """
@@ -30,3 +31,13 @@ def test_a_program_that_does_not_come_to_its_end_is_told():
 def test_an_emulator_that_is_not_there_is_one_line(capsys):
     assert emulated.main(["--emulator", shlex.quote("no such emulator")]) != 0
     assert "cannot be run" in capsys.readouterr().err
+
+
+def test_the_program_that_is_counted_marks_four_times(tmp_path, monkeypatch):
+    frames = tmp_path / "frames.npy"
+    np.save(frames, np.zeros((instructions.WARM_UP + 1, 24, 32, 3), np.uint8))
+    monkeypatch.setattr(instructions, "SEARCHED", 1)
+    marks = []
+    instructions.run_counted(frames, lambda: marks.append("begin"), lambda: marks.append("end"))
+    assert marks == ["begin", "end", "begin", "end"]
+    compile(emulated.PROGRAM.format(root="/root", frames="/frames.npy"), "program", "exec")

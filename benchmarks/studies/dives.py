@@ -38,7 +38,7 @@ from lightgesture.training.regions.nets import RegionTraining
 
 FOLDS: Final = 5
 """Parts into which the dives are dealt."""
-STEPS: Final = 1600
+STEPS: Final = 1333
 """Of the locator of a fold, a third of those of the shipped one."""
 REFINER_SHARE: Final = 0.8
 """Steps of the refiner over those of the locator, as `train regions` has them."""

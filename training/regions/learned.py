@@ -1,5 +1,5 @@
-"""The learned choice from its pictures: both nets, then the trees that weigh what the nets say of people and dives that
-they have not seen."""
+"""The learned choice from its pictures: both nets, then the trees that weigh what the nets say of people whom they have
+not seen."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -31,7 +31,7 @@ PAIR_SHARE: Final = 0.4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pictures:
-    """for_nets, composed: what the nets learn from. for_trees, unseen: other people, water and dives."""
+    """for_nets, composed: what the nets learn from. for_trees, unseen: other people and water."""
 
     for_nets: Material
     for_trees: Material
@@ -40,14 +40,8 @@ class Pictures:
 
     def without_divers(self, is_left_out: Callable[[str], bool]) -> "Pictures":
         """The same without real divers of the sources of which `is_left_out` says so."""
-        nets, trees = (
-            replace(
-                part,
-                divers=[one for one in part.divers if not any(map(is_left_out, one.picture.sources))],
-            )
-            for part in (self.for_nets, self.for_trees)
-        )
-        return replace(self, for_nets=nets, for_trees=trees)
+        rest = [one for one in self.for_nets.divers if not any(map(is_left_out, one.picture.sources))]
+        return replace(self, for_nets=replace(self.for_nets, divers=rest))
 
 
 def read_pictures(
@@ -96,7 +90,7 @@ def tree_pictures(
 ) -> tuple[list[BoxedPicture], list[BoxedPicture]]:
     """Pictures for the trees of places and, of others, for those of pairs; whole frames in several lights."""
     rng = np.random.default_rng(seed)
-    single = [*material.empty, *unseen, *(one.picture for one in material.divers if not one.picture.ignored)]
+    single = [*material.empty, *unseen]
     whole, order = len(material.frames), rng.permutation(len(material.frames) + len(single))
     parts: tuple[list[BoxedPicture], list[BoxedPicture]] = [], []
     for place, index in enumerate(order):

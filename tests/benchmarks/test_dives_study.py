@@ -25,8 +25,7 @@ def of_dive(dive):
 
 @pytest.fixture(name="pictures")
 def _pictures():
-    nets, trees = (Material([], [], [], [of_dive(dive) for dive in own]) for own in (DIVES[::2], DIVES[1::2]))
-    return Pictures(nets, trees, [], [])
+    return Pictures(Material([], [], [], [of_dive(dive) for dive in DIVES]), Material([], [], [], []), [], [])
 
 
 @pytest.fixture(name="data")
@@ -51,8 +50,8 @@ def test_each_fold_learns_from_all_dives_but_its_own(monkeypatch, tmp_path, data
 
     def learn(given, folder, seed, settings, progress):
         del folder, seed, progress
-        sources = (one.picture.sources for part in (given.for_nets, given.for_trees) for one in part.divers)
-        learnt.append({source.removeprefix("divers ") for own in sources for source in own})
+        sources = (source for one in given.for_nets.divers for source in one.picture.sources)
+        learnt.append({source.removeprefix("divers ") for source in sources})
         assert (settings.locator_steps, settings.refiner_steps) == (10, 8)
         return load_learned()
 

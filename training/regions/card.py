@@ -20,9 +20,10 @@ def write_card(
     without: LeftOut,
     settings: RegionTraining,
     pictures: Pictures,
-    seconds: float,
+    seconds: float | None,
 ) -> None:
-    """Write the card of the selector's file `out` beside it. seconds: of the training."""
+    """Write the card of the selector's file `out` beside it. seconds: of the training, None where parts of an earlier run
+    were used."""
     import sklearn
     import torch
 
@@ -48,7 +49,7 @@ def write_card(
         "seed": seed,
         "nets_went_on_from_the_selector_of_sha256": settings.origin,
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
-        "seconds": round(seconds),
+        "seconds": None if seconds is None else round(seconds),
         "peak_memory_mib": peak_memory_mib(),
         "versions": {
             "numpy": np.__version__,

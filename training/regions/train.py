@@ -46,11 +46,13 @@ def train_regions(
     settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
     told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
     folder = checkpoint_folder(out, {"seed": seed, **told})
+    is_resumed = len(list(folder.iterdir())) > 1
     pictures = read_pictures(data, without, seed, jobs, folder, progress)
     learned = learn_choice(pictures, folder, seed, settings, progress)
     progress("fitting the classical trees")
     write_selector(_classical(data, pictures, without, seed), learned, out)
-    write_card(out, seed, without, settings, pictures, time.monotonic() - started)
+    seconds = None if is_resumed else time.monotonic() - started
+    write_card(out, seed, without, settings, pictures, seconds)
 
 
 def train_classical(

@@ -1,9 +1,13 @@
 """Scripted candidates: what a selector might say of a frame, without a picture."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from lightgesture.features.track.state import begin
 from lightgesture.features.types import Candidates, HandRegion
+from tests.features.track_parts import NOW
 
 SIZE = (640, 480)
 
@@ -46,3 +50,14 @@ def sides():
         return {track.side: None if track.missed else track.box[0] + track.box[2] / 2 for track in tracks}
 
     return tell
+
+
+@pytest.fixture(scope="session")
+def track(region):
+    """Makes a track that is seen now, by default one that is followed."""
+
+    def make(key=1, x=100, **changes):
+        one = begin(key, key, region(x, 100), NOW)
+        return replace(one, **{"number": key, "since_s": 0.0, "basis": "pair", "level": 0.75, **changes})
+
+    return make

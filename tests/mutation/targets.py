@@ -66,7 +66,16 @@ GROUPS: dict[str, Group] = {
     "executor": Group(
         _modules("lightgesture/vehicle", "vehicle", *LINK, *PROCESSES),
         tuple(
-            f"tests/app/vehicle/test_{name}.py" for name in ("executor", "guard", "pilot", "profile", "steps")
+            f"tests/app/vehicle/test_{name}.py"
+            for name in (
+                "executor",
+                "executor_ends",
+                "executor_pictures",
+                "guard",
+                "pilot",
+                "profile",
+                "steps",
+            )
         ),
     ),
     "link": Group(tuple(f"lightgesture.vehicle.{name}" for name in LINK), ("tests/app/vehicle",)),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lightgesture.web import WebListener, board, head, listener, server
+from lightgesture.web import WebListener, answers, board, head, listener, server
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def serve(monkeypatch):
     def start(host="127.0.0.1", draw=None, token=None, **limits):
         for name, value in {"beat_s": 0.2, **limits}.items():
             place = next(
-                module for module in (server, listener, board, head) if hasattr(module, name.upper())
+                module for module in (server, answers, listener, board, head) if hasattr(module, name.upper())
             )
             monkeypatch.setattr(place, name.upper(), value)
         page = WebListener(0, host, draw, token=token)

@@ -20,7 +20,7 @@ DIVES = [f"reef_{number}" for number in range(12)]
 
 def of_dive(dive):
     image = np.zeros((24, 32, 3), np.uint8)
-    return RealDiver(BoxedPicture(image, sources=frozenset({f"divers {dive}"})), False)
+    return RealDiver(BoxedPicture(image, (), sources=frozenset({f"divers {dive}"})), False)
 
 
 @pytest.fixture(name="pictures")

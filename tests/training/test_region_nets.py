@@ -1,9 +1,16 @@
 """The nets of a selector among the parts of its training."""
 
-import numpy as np
+import json
+from dataclasses import replace
 
-from lightgesture.features.find.selector_file import load_learned
-from lightgesture.training.model_files import write_networks
+import numpy as np
+import pytest
+
+from lightgesture.cli import main
+from lightgesture.features.find.selector_file import load_classical, load_learned
+from lightgesture.training.model_files import write_networks, write_selector
+from lightgesture.training.regions import train
+from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.nets import LOCATOR, NETS, REFINER, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import Material
 
@@ -17,3 +24,25 @@ def test_nets_that_lie_in_their_folder_are_not_trained_again(tmp_path):
         np.array_equal(own.weights, parts.locator.weights[name].weights)
         for name, own in locator.weights.items()
     )
+
+
+def test_the_learned_choice_can_be_trained_alone(tmp_path, monkeypatch):
+    pytest.importorskip("torch")
+    marked = replace(load_classical(), pairs=replace(load_classical().pairs, base=0.25))
+    write_selector(marked, load_learned(), tmp_path / "start.npz")
+    nothing = Pictures(Material([], [], [], []), Material([], [], [], []), [], [])
+    monkeypatch.setattr(train, "read_pictures", lambda *_: nothing)
+    monkeypatch.setattr(train, "learn_choice", lambda *_: load_learned())
+    settings = RegionTraining(start=tmp_path / "start.npz", keeps_classical=True)
+    train.train_regions(tmp_path, tmp_path / "new.npz", settings=settings)
+    assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
+    card = json.loads((tmp_path / "new.json").read_text())
+    assert card["classical_trees"] == "of that selector"
+    assert card["nets_went_on_from_the_selector_of_sha256"] == settings.origin
+    assert isinstance(card["seconds"], int)
+
+
+@pytest.mark.parametrize("option", ["--learned", "--classical"])
+def test_what_keeps_a_part_of_another_file_must_name_it(option, tmp_path, capsys):
+    assert main(["train", "regions", "--data", str(tmp_path), "--out", str(tmp_path / "a.npz"), option]) == 2
+    assert f"{option} keeps the" in capsys.readouterr().err

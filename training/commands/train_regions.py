@@ -37,7 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="selector whose nets go on learning, 'bundled' for the one that is used by default: a third of the steps "
         "suffices",
     )
-    parser.add_argument(
+    alone = parser.add_mutually_exclusive_group()
+    alone.add_argument(
+        "--learned",
+        action="store_true",
+        help="train the learned choice alone; the classical one stays that of --start, which must be given",
+    )
+    alone.add_argument(
         "--classical",
         action="store_true",
         help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
@@ -76,11 +82,12 @@ def run(args: argparse.Namespace) -> int:
     except ValueError as error:
         raise UsageError(f"--fold: {error}") from error
     start = _start(args.start)
-    if args.classical and start is None:
+    if (args.classical or args.learned) and start is None:
+        alone, kept = ("--classical", "nets") if args.classical else ("--learned", "classical trees")
         raise UsageError(
-            "--classical keeps the nets of another file; name it by --start, such as --start bundled"
+            f"{alone} keeps the {kept} of another file; name it by --start, such as --start bundled"
         )
-    settings = RegionTraining(precision=args.precision, start=start)
+    settings = RegionTraining(precision=args.precision, start=start, keeps_classical=args.learned)
     if args.steps is not None:
         settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
     try:

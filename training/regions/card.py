@@ -48,6 +48,7 @@ def write_card(
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
         "seed": seed,
         "nets_went_on_from_the_selector_of_sha256": settings.origin,
+        "classical_trees": "of that selector" if settings.keeps_classical else "fitted with it",
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
         "seconds": None if seconds is None else round(seconds),
         "peak_memory_mib": peak_memory_mib(),

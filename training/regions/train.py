@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from lightgesture.features.compiled import best_loops
-from lightgesture.features.find.selector_file import ClassicalParts, load_learned
+from lightgesture.features.find.selector_file import ClassicalParts, load_classical, load_learned
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
@@ -49,8 +49,12 @@ def train_regions(
     is_resumed = len(list(folder.iterdir())) > 1
     pictures = read_pictures(data, without, seed, jobs, folder, progress)
     learned = learn_choice(pictures, folder, seed, settings, progress)
-    progress("fitting the classical trees")
-    write_selector(_classical(data, pictures, without, seed), learned, out)
+    if settings.keeps_classical:
+        classical = load_classical(settings.start)
+    else:
+        progress("fitting the classical trees")
+        classical = _classical(data, pictures, without, seed)
+    write_selector(classical, learned, out)
     seconds = None if is_resumed else time.monotonic() - started
     write_card(out, seed, without, settings, pictures, seconds)
 

@@ -5,9 +5,9 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
+    from lightgesture.config.declaring import CALIBRATE
     from lightgesture.config.options import add_options
     from lightgesture.config.parsers import seconds
-    from lightgesture.config.settings import CALIBRATE
 
     parser.add_argument(
         "source",

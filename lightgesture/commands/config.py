@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
+    from lightgesture.config.declaring import DECODING
     from lightgesture.config.options import add_options
-    from lightgesture.config.settings import DECODING
 
     parser.add_argument(
         "file",

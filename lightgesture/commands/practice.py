@@ -5,9 +5,9 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
+    from lightgesture.config.declaring import PRACTICE
     from lightgesture.config.options import add_options
     from lightgesture.config.parsers import positive, seconds, whole
-    from lightgesture.config.settings import PRACTICE
 
     parser.add_argument(
         "source",

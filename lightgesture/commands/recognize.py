@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
+    from lightgesture.config.declaring import RECOGNIZE
     from lightgesture.config.options import add_options
-    from lightgesture.config.settings import RECOGNIZE
 
     parser.add_argument("inputs", nargs="+", metavar="IMAGE", help="picture or glob")
     add_options(parser, RECOGNIZE)

@@ -5,8 +5,8 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of the command."""
+    from lightgesture.config.declaring import LIVE
     from lightgesture.config.options import add_options
-    from lightgesture.config.settings import LIVE
 
     parser.add_argument(
         "--raw", action="store_true", help="subscribe Image on image, not CompressedImage on image/compressed"

@@ -13,7 +13,8 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lightgesture.config.settings import DECODING, DecodeSettings, change_paths
+from lightgesture.config.declaring import DECODING
+from lightgesture.config.settings import DecodeSettings, change_paths
 from lightgesture.errors import UsageError
 from lightgesture.fsm.toml_file import TomlError, read_toml, suggest_key
 from lightgesture.parser import MayStandAlone

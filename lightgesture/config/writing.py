@@ -5,7 +5,8 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any, Final
 
-from lightgesture.config.settings import DECODING, DecodeSettings
+from lightgesture.config.declaring import DECODING
+from lightgesture.config.settings import DecodeSettings
 
 WIDTH: Final = 100
 """Letters of a line of comment."""

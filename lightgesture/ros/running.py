@@ -4,9 +4,10 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from lightgesture.actions.live import run_live
+from lightgesture.config.declaring import LIVE
 from lightgesture.config.opening import open_pipeline
 from lightgesture.config.options import explain
-from lightgesture.config.settings import LIVE, DecodeSettings
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.ros.listener import RosListener, Wire
 from lightgesture.ros.source import TopicSource

@@ -10,8 +10,9 @@ import sys
 import pytest
 
 from lightgesture.cli import COMMANDS, make_parser, present_commands
+from lightgesture.config.declaring import DECODING
 from lightgesture.config.options import read_config
-from lightgesture.config.settings import DECODING, DecodeSettings
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.console import messages_shown, warn
 from lightgesture.errors import ExitStatus
 from lightgesture.parser import arguments, children

@@ -4,8 +4,9 @@ import argparse
 
 import pytest
 
+from lightgesture.config.declaring import DECODE, LIVE
 from lightgesture.config.options import add_options, load_settings, read_config
-from lightgesture.config.settings import DECODE, LIVE, DecodeSettings
+from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import ExitStatus, UsageError
 
 

@@ -11,8 +11,8 @@ import pytest
 
 from lightgesture._version import __version__
 from lightgesture.cli import Parser
+from lightgesture.config.declaring import LIVE
 from lightgesture.config.options import add_options, read_config
-from lightgesture.config.settings import LIVE
 from lightgesture.sinks.mavlink_link import Link
 
 FOLDER = Path(__file__).resolve().parents[2] / "deploy" / "blueos"

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from lightgesture.cli import Parser
+from lightgesture.config.declaring import LIVE
 from lightgesture.config.options import add_options, read_config
-from lightgesture.config.settings import LIVE
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 UNIT = DEPLOY / "lightgesture.service"

@@ -1,35 +1,19 @@
-"""Video files as cameras, phones and capture cards write them, whole and broken."""
+"""Frames and times of whole videos, whatever their codec, colours and clocks."""
 
-import gc
 import json
-import os
-import threading
-import weakref
-from contextlib import suppress
 from datetime import UTC, datetime
 
 import av
 import numpy as np
 import pytest
 
-from lightgesture.actions.decode import SAMPLE
-from lightgesture.errors import ExitStatus, InputError
-from lightgesture.sources import SourceOptions, open_source
+from lightgesture.errors import ExitStatus
+from lightgesture.sources import open_source
 from lightgesture.sources.clock import RecordingClock, creation_time
 from lightgesture.sources.conversion import Converter
-from lightgesture.sources.decoding import StreamDecoder
-from lightgesture.sources.file_size import is_cut_off
+from tests.app.sources.video_makers import read, times
 
-from .conftest import RATE, noise
-
-
-def read(path, **options):
-    with open_source(path, SourceOptions(**options)) as source:
-        return list(source)
-
-
-def times(frames):
-    return [round(frame.time_s * RATE, 1) for frame in frames]
+from .conftest import noise
 
 
 def differ(frame, picture):
@@ -135,103 +119,6 @@ def test_interlaced_ycgco(write_video, capsys):
     assert capsys.readouterr().err == ""
 
 
-def damage(path, start=0.5, length=None, pattern=7):
-    content = bytearray(path.read_bytes())
-    length = length or len(content) // 5
-    first = round(len(content) * start)
-    content[first : first + length] = bytes(number * pattern & 255 for number in range(length))
-    path.write_bytes(content)
-    return path
-
-
-def test_a_damaged_place_is_read_over_and_told(write_video, capsys):
-    path = damage(write_video("a.mp4", noise(90, (160, 120)), options={"bf": "0", "g": "10"}))
-    frames = read(path)
-    (gap,) = [frame for frame in frames if frame.gap]
-    assert gap.gap.startswith("damaged from")
-    assert times(frames) == [frame.index for frame in frames]
-    assert frames[-1].index == 89
-    assert "left out" in capsys.readouterr().err
-
-
-def test_a_damaged_avi_keeps_the_time_of_its_index(write_video):
-    path = damage(write_video("a.avi", noise(90, (160, 120)), "mjpeg", "yuvj420p"))
-    frames = read(path)
-    assert 60 < len(frames) < 80
-    assert times(frames)[-1] == 89
-
-
-def test_frames_that_a_codec_drops_without_an_error_are_told(write_video, monkeypatch):
-    decode, packets = StreamDecoder.decode, []
-
-    def drop_some(decoder, packet):
-        packets.append(packet)
-        return [frame for frame in decode(decoder, packet) if not 20 <= len(packets) < 60]
-
-    monkeypatch.setattr(StreamDecoder, "decode", drop_some)
-    path = write_video("a.hevc", noise(90), "libx265", options={"x265-params": "log-level=none:bframes=0"})
-    frames = read(path)
-    assert frames[0].gap is None
-    assert frames[-1].index >= 88
-    assert sum(frame.gap is not None and frame.gap.startswith("damaged from") for frame in frames) == 1
-
-
-def test_whole_videos_have_no_gap(write_video):
-    for name, codec in (
-        ("a.hevc", "libx265"),
-        ("a.h264", "libx264"),
-        ("a.avi", "mpeg4"),
-        ("b.mp4", "libx265"),
-    ):
-        options = {"x265-params": "log-level=none"} if codec == "libx265" else {"bf": "2"}
-        frames = read(write_video(name, noise(60, (160, 120)), codec, options=options))
-        assert [frame.index for frame in frames if frame.gap is None] == list(range(60))
-
-
-def test_lost_frames_of_less_than_a_gap_are_told_at_the_end(write_video, capsys):
-    path = write_video("a.mkv", noise(12), "mjpeg", "yuvj420p")
-    content = bytearray(path.read_bytes())
-    starts = [place for place in range(len(content)) if content[place : place + 3] == b"\xff\xd8\xff"]
-    length = starts[5] - starts[4] - 40
-    content[starts[4] : starts[4] + length] = bytes(length)
-    path.write_bytes(content)
-    frames = read(path)
-    assert [frame.index for frame in frames] == [0, 1, 2, 3, *range(5, 12)]
-    assert not any(frame.gap for frame in frames)
-    assert capsys.readouterr().err.endswith("left out 1 damaged frame\n")
-
-
-def trim(path, first):
-    """As phones trim: the packets from a key frame on, those before `first` outside the edit list."""
-    target = path.with_name(f"trimmed_{path.name}")
-    with av.open(str(path)) as source, av.open(str(target), "w") as container:
-        stream = source.streams.video[0]
-        copy = container.add_stream_from_template(stream)
-        shift = round(first / RATE / stream.time_base)
-        for packet in source.demux(stream):
-            if packet.dts is not None:
-                packet.pts, packet.dts, packet.stream = packet.pts - shift, packet.dts - shift, copy
-                container.mux(packet)
-    return target
-
-
-def test_an_edit_list_promises_more_than_it_shows(write_video):
-    path = trim(write_video("a.mp4", noise(40), options={"bf": "0", "g": "60"}), 9)
-    frames = read(path)
-    assert times(frames) == list(range(31))
-
-
-def test_sound_that_lasts_longer_is_no_early_end(write_video):
-    path = write_video("a.mkv", noise(20), sound=(5, "pcm_s16le"))
-    assert times(read(path)) == list(range(20))
-
-
-def test_time_counts_from_the_sound_that_begins_first(write_video):
-    stamps = [2 + number / RATE for number in range(20)]
-    frames = read(write_video("a.mp4", noise(20), times=stamps, sound=(4, "aac")))
-    assert times(frames) == [60 + number for number in range(20)]
-
-
 @pytest.mark.parametrize(
     ("name", "codec"), [("a.h264", "libx264"), ("a.hevc", "libx265"), ("a.mjpeg", "mjpeg")]
 )
@@ -282,140 +169,3 @@ def test_stamps_that_jump_back_by_a_day():
     assert (clock.read(3.0), clock.jump_s) == (0.15, pytest.approx(86_397.05))
     assert (clock.read(3.1), clock.jump_s) == (0.25, 0.0)
     assert (clock.read(None), clock.read(None, 3)) == (0.35, 0.65)
-
-
-def test_a_picture_of_another_size_between_is_a_gap(tmp_path, write_video):
-    parts = [
-        write_video(f"{number}.h264", noise(8, size)) for number, size in enumerate([(64, 48), (96, 64)])
-    ]
-    path = tmp_path / "both.h264"
-    path.write_bytes(b"".join(part.read_bytes() for part in (parts[0], parts[1], parts[0])))
-    frames = read(path)
-    assert [(frame.index, frame.gap) for frame in frames if frame.gap] == [
-        (8, "the picture changes from 64 x 48 to 96 x 64"),
-        (16, "the picture changes from 96 x 64 to 64 x 48"),
-    ]
-
-
-@pytest.mark.parametrize("suffix", ["avi", "mkv", "mov", "mp4"])
-def test_a_file_that_was_cut_off(write_video, suffix):
-    path = write_video(f"a.{suffix}", noise(60), "mjpeg", "yuvj420p", movflags="faststart")
-    assert not is_cut_off(str(path))
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) * 2 // 3])
-    assert is_cut_off(str(path))
-    frames = []
-    with open_source(path) as source, pytest.raises(InputError, match=r"ends early, after \d\d of 60 frames"):
-        frames.extend(source)
-    assert 30 < len(frames) < 50
-
-
-def test_a_file_that_lost_only_its_index_is_whole(write_video):
-    path = write_video("a.avi", noise(30), "mjpeg", "yuvj420p")
-    path.write_bytes(path.read_bytes()[:-100])
-    assert is_cut_off(str(path))
-    assert len(read(path)) == 30
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"RIFF",
-        b"\0\0\0\x10ftyp",
-        b"\0\0\0\1ftyp" + bytes(4),
-        b"\x1aE\xdf\xa3",
-        b"\x1aE\xdf\xa3\0",
-        b"\x1aE\xdf\xa3\x80\x18S\x80g\x01" + b"\xff" * 7,
-        bytes(99),
-    ],
-)
-def test_headers_of_any_length_are_endured(tmp_path, content):
-    path = tmp_path / "a.mp4"
-    path.write_bytes(content)
-    with suppress(IndexError):
-        assert is_cut_off(str(path)) in (True, False)
-    with pytest.raises(InputError):
-        open_source(path)
-
-
-def test_a_file_that_grows_while_it_is_read(write_video):
-    path = write_video("a.ts", noise(90))
-    content = path.read_bytes()
-    path.write_bytes(content[: len(content) // 2])
-    frames = []
-    with open_source(path) as source:
-        pictures = iter(source)
-        frames.append(next(pictures))
-        path.write_bytes(content)
-        with pytest.raises(InputError, match="is still being written"):
-            frames.extend(pictures)
-    assert len(frames) > 30
-
-
-def test_a_pipe_is_sent_to_standard_input(tmp_path):
-    os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(InputError, match=r"is a pipe; send pictures to standard input"):
-        open_source(tmp_path / "pipe")
-
-
-def test_raw_video_whose_pixels_look_like_text(write_video):
-    path = write_video("a.y4m", [np.full((48, 64, 3), 90, np.uint8)] * 3, "wrapped_avframe")
-    assert times(read(path)) == [0, 1, 2]
-
-
-def test_a_header_without_a_size(write_video):
-    path = write_video("a.avi", noise(9), "mjpeg", "yuvj420p")
-    content = bytearray(path.read_bytes())
-    for name, place in ((b"avih", 40), (b"strf", 12)):
-        start = content.find(name) + place
-        content[start : start + 8] = bytes(8)
-    path.write_bytes(content)
-    frames = read(path)
-    assert (len(frames), frames[0].image.shape) == (9, (48, 64, 3))
-
-
-def test_a_picture_of_one_row(write_video, run):
-    wide = np.tile(noise(1)[0][:1], (1, 1563, 1))[:, :100_000]
-    result = run("decode", write_video("a.mkv", [wide] * 2, "ffv1", "bgr0"))
-    assert (result.status, result.err) == (ExitStatus.OK, [])
-
-
-def test_a_video_of_one_frame(write_video, run):
-    result = run("decode", write_video("a.mp4", noise(1)))
-    assert (result.status, result.err) == (ExitStatus.OK, [])
-    assert "1 frame in 0.00 s" in result.out[-1]
-
-
-def test_sound_alone(tmp_path):
-    path = tmp_path / "a.wav"
-    with av.open(str(path), "w") as container:
-        stream = container.add_stream("pcm_s16le", rate=48_000)
-        frame = av.AudioFrame.from_ndarray(np.zeros((1, 4800), np.int16), format="s16", layout="mono")
-        frame.sample_rate = 48_000
-        container.mux([*stream.encode(frame), *stream.encode(None)])
-    with pytest.raises(InputError, match="holds no pictures"):
-        open_source(path)
-
-
-def test_sources_of_several_threads(write_video):
-    path, found = write_video("a.mp4", noise(20)), []
-    threads = [threading.Thread(target=lambda: found.append(len(read(path)))) for _ in range(3)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert found == [20] * 3
-
-
-def test_a_video_that_was_read_is_given_back_at_once():
-    """Not when Python collects what hangs in circles: by then the decoders of many videos would fill the memory."""
-    gc.disable()
-    try:
-        with open_source(str(SAMPLE)) as source:
-            next(iter(source))
-        left = weakref.ref(source)
-        del source
-        assert left() is None
-    finally:
-        gc.enable()

@@ -38,6 +38,8 @@ from lightgesture.training.pool.patch_pool import rows_without
 
 Change = Callable[[PoolSettings], PoolSettings]
 EVERYTHING, NOTHING = "everything", "nothing"
+POSED = 20000
+"""Hands in the poses of real ones in the row that has them."""
 
 WITHOUT: Mapping[str, tuple[Mapping[str, float], Mapping[str, float]]] = {
     "no mirror": ({"mirror": 0.0}, {}),
@@ -61,12 +63,12 @@ def changed(pool: PoolSettings, copy: Mapping[str, float], light: Mapping[str, f
 
 def without_rendered(pool: PoolSettings) -> PoolSettings:
     """The same pool of pictures alone."""
-    return replace(pool, rendered=0, posed=0)
+    return replace(pool, rendered=0)
 
 
-def without_posed(pool: PoolSettings) -> PoolSettings:
-    """The same pool without rendered hands in the poses of real ones."""
-    return replace(pool, posed=0)
+def with_posed(pool: PoolSettings) -> PoolSettings:
+    """The same pool with rendered hands in the poses of real ones besides."""
+    return replace(pool, posed=POSED)
 
 
 def without_mild(pool: PoolSettings) -> PoolSettings:
@@ -90,7 +92,7 @@ POOLS: Mapping[str, Change] = {
     **{name: _leaving_out(name) for name in WITHOUT},
     "no mild copies": without_mild,
     "no rendered hands": without_rendered,
-    "no posed hands": without_posed,
+    "posed hands": with_posed,
     NOTHING: with_nothing,
 }
 """What becomes of a pool's settings, by the name of the row."""

@@ -129,8 +129,9 @@ def test_pools_differ_in_what_their_name_says():
     assert len({repr(one) for one in made.values()}) == len(POOLS)
     assert made["no water"].augment.light == replace(pool.augment.light, water=0.0)
     assert replace(made["no water"].augment, light=pool.augment.light) == pool.augment
-    assert made["no rendered hands"] == replace(pool, rendered=0, posed=0)
-    assert made["no posed hands"] == replace(pool, posed=0)
+    assert made["no rendered hands"] == replace(pool, rendered=0)
+    assert pool.posed == 0
+    assert made["posed hands"] == replace(pool, posed=20000)
     assert made["no mild copies"] == replace(pool, mild_share=0.0)
     nothing = made[NOTHING]
     assert (nothing.rendered, nothing.mild_copies) == (0, 0)

@@ -10,7 +10,7 @@ import pytest
 from lightgesture.errors import UsageError
 from lightgesture.features.patch import PatchSettings, cut_patch
 from lightgesture.training.card import data_section
-from lightgesture.training.commands import classifier
+from lightgesture.training.commands import classifier, train_cnn, train_look
 from lightgesture.training.nets import hand_samples
 from lightgesture.training.nets.cnn import CnnTraining, draw
 from lightgesture.training.nets.hand_samples import HandSamples
@@ -277,7 +277,7 @@ def test_patches_of_before_are_used_and_it_is_told(tmp_path, monkeypatch, caplog
     for token in ("5", "none"):
         (hands / token).mkdir(parents=True)
         cv2.imwrite(str(hands / token / "1.png"), dotted(4).image)
-    training = CnnTraining(hands, pool=PoolSettings(copies=1, rounds=1, rendered=0))
+    training = CnnTraining(hands, pool=PoolSettings(copies=1, rounds=1, rendered=0), landmarks=0.3)
     out = tmp_path / "net.npz"
     draw(training, out, lambda _: None)
     assert not caplog.records
@@ -287,11 +287,21 @@ def test_patches_of_before_are_used_and_it_is_told(tmp_path, monkeypatch, caplog
     assert "drawn without landmarks" in record.getMessage()
 
 
+@pytest.mark.parametrize("command", [train_cnn, train_look])
+def test_posed_hands_and_landmarks_are_learnt_when_asked_for_alone(command):
+    parser = argparse.ArgumentParser()
+    command.add_arguments(parser)
+    words = ["--data", "hands.csv"]
+    training = classifier.net_training(parser.parse_args(words))
+    assert (training.pool.posed, training.landmarks) == (0, 0.0)
+    training = classifier.net_training(parser.parse_args([*words, "--posed", "20", "--landmarks", "0.3"]))
+    assert (training.pool.posed, training.landmarks) == (20, 0.3)
+
+
 @pytest.mark.parametrize("text", ["-0.1", "11", "nan"])
 def test_a_weight_out_of_range_is_refused(text, capsys):
     parser = argparse.ArgumentParser()
     classifier.add_landmarks_argument(parser)
-    assert parser.parse_args([]).landmarks == CnnTraining("unused").landmarks
     with pytest.raises(SystemExit):
         parser.parse_args(["--landmarks", text])
     assert "is not from 0 to 10" in capsys.readouterr().err

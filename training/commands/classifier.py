@@ -76,8 +76,8 @@ def add_landmarks_argument(parser: argparse.ArgumentParser) -> None:
         "--landmarks",
         type=_weight,
         metavar="WEIGHT",
-        help="of the 21 landmarks that a net learns besides where they are known (column lm, rendered hands); the "
-        "model holds nothing of it (0.3 is a good one; default: classes alone)",
+        help="of the 21 landmarks that a net learns besides where they are known (column lm, rendered hands), such as "
+        "0.3; the model holds nothing of it (default: 0, classes alone)",
     )
 
 

@@ -68,7 +68,8 @@ class CnnTraining:
     precision: "Precision" = "float32"
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
     landmarks: float = 0.0
-    """Weight of a hand's landmarks, which all nets learn besides where they are known, 0 to 10; 0: they learn none."""
+    """Weight of a hand's landmarks, which all nets learn besides where they are known, 0 to 10; 0: they learn none.
+    At 0.3 they read hands from the side better, and are surer of what they read wrongly (docs/models.md)."""
     pool: PoolSettings = field(default_factory=PoolSettings)
     """What is drawn."""
 

@@ -32,7 +32,8 @@ class PoolSettings:
     rendered: int = 12000
     """Rendered hands beside the real ones, of the signs that both know."""
     posed: int = 0
-    """Rendered hands in the poses of real ones whose joints are known, seen from up to 75 degrees; 0 for none."""
+    """Rendered hands in the poses of real ones whose joints are known, seen from up to 75 degrees, 0 for none; 20,000
+    were tried (docs/models.md)."""
     augment: AugmentSettings = field(
         default_factory=lambda: AugmentSettings(
             rotation=18.0,

@@ -9,6 +9,9 @@ from typing import Final
 from lightgesture.errors import UsageError
 from lightgesture.results.atomic import replacing
 
+REQUEST: Final = "request.json"
+"""What a folder of parts is of."""
+
 MOST_TOLD: Final = 3
 """Settings that are named where requests differ."""
 
@@ -28,7 +31,7 @@ def need_torch() -> None:
 def checkpoint_folder(out: Path, request: Mapping[str, object]) -> Path:
     """The folder of what is done; UsageError where it belongs to another training: what differs, and what to do."""
     folder = out.with_suffix(".parts")
-    note, text = folder / "request.json", json.dumps(dict(request), sort_keys=True)
+    note, text = folder / REQUEST, json.dumps(dict(request), sort_keys=True)
     if note.exists() and (before := note.read_text(encoding="utf-8")) != text:
         raise UsageError(
             f"{folder}: holds parts of another training{_difference(before, text)}; {_remedy(folder)}"

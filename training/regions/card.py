@@ -22,8 +22,7 @@ def write_card(
     pictures: Pictures,
     seconds: float | None,
 ) -> None:
-    """Write the card of the selector's file `out` beside it. seconds: of the training, None where parts of an
-    earlier run were used."""
+    """Write the card of the selector's file `out` beside it. seconds: of the training, None where unknown."""
     import sklearn
     import torch
 

@@ -1,7 +1,6 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
 import json
-import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
@@ -13,6 +12,7 @@ from lightgesture.features.find.selector_file import ClassicalParts, load_classi
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
+from lightgesture.training.nets.spent_time import SpentTime
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.regions.bank import make_bank
@@ -43,20 +43,20 @@ def train_regions(
     when the file is written. Raises InputError, UsageError.
     """
     need_torch()
-    settings, without, started = settings or RegionTraining(), without or LeftOut(), time.monotonic()
+    settings, without = settings or RegionTraining(), without or LeftOut()
     told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
     folder = checkpoint_folder(out, {"seed": seed, **told})
-    is_resumed = len(list(folder.iterdir())) > 1
-    pictures = read_pictures(data, without, seed, jobs, folder, progress)
-    learned = learn_choice(pictures, folder, seed, settings, progress)
-    if settings.keeps_classical:
-        classical = load_classical(settings.start)
-    else:
-        progress("fitting the classical trees")
-        classical = _classical(data, pictures, without, seed)
-    write_selector(classical, learned, out)
-    seconds = None if is_resumed else time.monotonic() - started
-    write_card(out, seed, without, settings, pictures, seconds)
+    with SpentTime(folder) as spent:
+        progress = spent.kept_by(progress)
+        pictures = read_pictures(data, without, seed, jobs, folder, progress)
+        learned = learn_choice(pictures, folder, seed, settings, progress)
+        if settings.keeps_classical:
+            classical = load_classical(settings.start)
+        else:
+            progress("fitting the classical trees")
+            classical = _classical(data, pictures, without, seed)
+        write_selector(classical, learned, out)
+        write_card(out, seed, without, settings, pictures, spent.seconds)
 
 
 def train_classical(

@@ -36,6 +36,11 @@ PROCESSES = ("runner", "watchdog", "watchdog_process")
 """A thread and a process of its own, in which an exchange of code does not arrive; slow tests hold them."""
 IN_TIME = "bounded_time or refused_at_once or import_is_light"
 
+VEHICLE_TESTS = (
+    *("executor", "executor_ends", "executor_pictures", "guard", "intake"),
+    *("nods", "pilot", "profile", "step_parameters", "step_pictures"),
+)
+"""What is tried on the executor, by the ends of the modules' names."""
 GROUPS: dict[str, Group] = {
     "fsm": Group(_modules("fsm", "fsm"), ("tests/fsm",), IN_TIME),
     "language": Group(_modules("fsm/language", "fsm.language"), ("tests/fsm",), IN_TIME),
@@ -65,18 +70,7 @@ GROUPS: dict[str, Group] = {
     ),
     "executor": Group(
         _modules("lightgesture/vehicle", "vehicle", *LINK, *PROCESSES),
-        tuple(
-            f"tests/app/vehicle/test_{name}.py"
-            for name in (
-                "executor",
-                "executor_ends",
-                "executor_pictures",
-                "guard",
-                "pilot",
-                "profile",
-                "steps",
-            )
-        ),
+        tuple(f"tests/app/vehicle/test_{name}.py" for name in VEHICLE_TESTS),
     ),
     "link": Group(tuple(f"lightgesture.vehicle.{name}" for name in LINK), ("tests/app/vehicle",)),
 }

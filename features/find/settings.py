@@ -19,5 +19,5 @@ class SelectorSettings:
 
 CLASSICAL: Final = SelectorSettings(pair_score=0.18, single_score=0.4)
 """For scores of the classical choice."""
-LEARNED: Final = SelectorSettings(pair_score=0.3, single_score=0.5)
+LEARNED: Final = SelectorSettings(pair_score=0.4, single_score=0.5)
 """For scores of locator and refiner."""

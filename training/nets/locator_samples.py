@@ -23,8 +23,8 @@ FILLED = 128
 
 
 REAL_SHARE: Final = 0.22
-EMPTY_SHARE: Final = 0.08
-DIVER_SHARE: Final = 0.45
+EMPTY_SHARE: Final = 0.10
+DIVER_SHARE: Final = 0.36
 """Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
 would be of divers where there are none. Twice as many divers as before (0.22) find half as many again of the signs of
 dives that were left out."""

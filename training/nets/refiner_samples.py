@@ -24,9 +24,9 @@ Random = np.random.Generator
 
 WINDOWS: Final = 8
 """Of one picture."""
-REAL_SHARE: Final = 0.24
-EMPTY_SHARE: Final = 0.06
-DIVER_SHARE: Final = 0.45
+REAL_SHARE: Final = 0.26
+EMPTY_SHARE: Final = 0.08
+DIVER_SHARE: Final = 0.33
 """Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
 would be of divers where there are none."""
 HAND, HARD, BESIDE, FACE = 0.55, 0.85, 0.93, 0.97

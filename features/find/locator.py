@@ -5,8 +5,8 @@ the distances to the four edges of its box (Tian, Shen, Chen and He, "FCOS", 201
 second plane of heat marks faces, which tell the axis of the body. Peaks are local maxima of the heat, each with a box.
 
 The net sees twice the width and height of the working picture, at which the fingers of a diver's small, pale hand still
-stand apart: of dives that it has not seen it finds twice as many hands so, and since its first layers halve the picture
-three times, not twice, for a third more products.
+stand apart. Its first layers halve the picture three times, so that this takes a third more products than the working
+picture would, and not four times as many.
 """
 
 from dataclasses import dataclass

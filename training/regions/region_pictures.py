@@ -61,8 +61,8 @@ class Material:
     def parted(self, one_in: int) -> tuple["Material", "Material"]:
         """Most of it, and one in so many: of people by source, so that nobody is in both, of empty frames by number.
 
-        Real divers are all in the first part: a hundred signs are too few to keep any back. Where an eighth of the
-        dives was kept for the trees, the nets found half as many of the signs of another dive of one diver.
+        Real divers are all in the first part: a hundred signs are too few to keep any back, and trees that were fitted
+        on dives that their nets had not seen told hands no better.
         """
 
         def is_second(source: str) -> bool:

@@ -6,6 +6,7 @@ import pytest
 
 from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.find.locator import detailed
 from lightgesture.features.find.refiner import Refiner
 from lightgesture.features.find.selector import load_selector
 from lightgesture.features.find.selector_file import load_learned
@@ -66,3 +67,25 @@ def test_boxes_at_the_edge_and_of_any_size_are_looked_at(finder, picture, box):
         assert y >= 0
         assert x + width <= picture.shape[1]
         assert y + height <= picture.shape[0]
+
+
+@pytest.mark.parametrize("size", [(1, 1), (80, 60), (160, 120), (240, 180), (640, 480), (1920, 1080)])
+def test_the_locator_sees_twice_the_working_picture_whatever_the_frame(size):
+    width, height = size
+    colour = ColourStage().process(np.full((height, width, 3), 90, np.uint8))
+    rows, columns = colour.picture.shape[:2]
+    assert detailed(colour).shape == (2 * rows, 2 * columns, 3)
+    if width >= 640:
+        assert detailed(colour) is colour.detail
+
+
+def test_a_small_picture_shows_the_same_hands(finder, picture):
+    large, small = (
+        finder.process(
+            ColourStage().process(np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA)))
+        )
+        for size in ((640, 480), (160, 120))
+    )
+    for one in large.regions[:2]:
+        x, y, width, height = (value / 4 for value in one.box)
+        assert max(box_iou((x, y, width, height), other.box) for other in small.regions) > 0.6

@@ -45,12 +45,10 @@ class CardOptions:
 
 @dataclass(frozen=True, slots=True)
 class FrontOptions:
-    """What is read, and how, by which front end."""
+    """Of any front end: which one, and how its pictures lie."""
 
     front_end: "FrontEndName" = HANDS
     mirrored: bool = False
-    hands: HandOptions = HandOptions()
-    cards: CardOptions = CardOptions()
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +62,13 @@ class DecoderOptions:
     grammar: str | os.PathLike[str] | None = None
 
 
-def make_front(front: FrontEnd | None, options: FrontOptions, decoder: Decoder) -> FrontEnd:
+def make_front(
+    front: FrontEnd | None, options: FrontOptions, hands: HandOptions, cards: CardOptions, decoder: Decoder
+) -> FrontEnd:
     """`front` itself, or the front end of the options, for the rule of a decoder.
 
     Raises ValueError for options that the front end does not have, and what `Pipeline` says.
     """
-    hands, cards = options.hands, options.cards
     if front is not None:
         _refuse("another front end", options, hands, cards)
         return front
@@ -143,10 +142,7 @@ def _reading(threshold: float | None, rule: Rule) -> ReadingSettings:
 def _refuse(half: str, *options: FrontOptions | HandOptions | CardOptions | DecoderOptions) -> None:
     """ValueError for options that were given and that this half of the pipeline does not have."""
     names = [
-        one.name
-        for given in options
-        for one in fields(given)
-        if getattr(given, one.name) != one.default and one.name not in ("hands", "cards")
+        one.name for given in options for one in fields(given) if getattr(given, one.name) != one.default
     ]
     if names:
         raise ValueError(f"{', '.join(names)}: of no effect beside {half}; leave out either")

@@ -112,9 +112,9 @@ class Pipeline:
     ) -> None:
         language = DecoderOptions(rule, hold, hold_seconds, caution, grammar)
         hands = HandOptions(model, selector, profile, threshold, rotate)
-        reading = FrontOptions(front_end, mirrored, hands, CardOptions(tag_detector, shapes))
+        cards = CardOptions(tag_detector, shapes)
         self.decoder = make_decoder(decoder, language, front_end, source)
-        self.front = make_front(front, reading, self.decoder)
+        self.front = make_front(front, FrontOptions(front_end, mirrored), hands, cards, self.decoder)
         self._frames, self._one_thread = frames, OneBlasThread()
         self._begin(self.decoder.source, debug)
 

@@ -61,8 +61,8 @@ def write_selector(classical: ClassicalParts, learned: LearnedParts, path: Path)
         **_classical_arrays(classical),
         **_tree_arrays("places", learned.places),
         **_tree_arrays("place_pairs", learned.pairs),
-        **network_arrays("locator", learned.locator),
-        **network_arrays("refiner", learned.refiner),
+        **network_arrays(selector_file.LOCATOR, learned.locator),
+        **network_arrays(selector_file.REFINER, learned.refiner),
     }
     _write(path, {"format": selector_file.FORMAT, "kind": selector_file.KIND}, arrays)
 

@@ -6,7 +6,7 @@ has seen no diver, or from random weights. The reader is the model that is named
 these tables say of reading, of hands in given boxes most of all, counts for models alone that have not.
 
 What is done lies in the folder of parts, and the same command goes on there: composed pictures, the nets of each fold
-and its selector, `foldN.npz`, which `evaluate divers --dive` and `decode --selector` take.
+and its selector, `foldN.npz`, which `evaluate divers --selector FILE --dive NAME` takes.
 """
 
 import argparse
@@ -38,10 +38,8 @@ from lightgesture.training.regions.nets import RegionTraining
 
 FOLDS: Final = 5
 """Parts into which the dives are dealt."""
-STEPS: Final = 1333
-"""Of the locator of a fold, a third of those of the shipped one."""
-REFINER_SHARE: Final = 0.8
-"""Steps of the refiner over those of the locator, as `train regions` has them."""
+STEPS: Final = 1600
+"""Of the locator of a fold, between a quarter and a third of those of the shipped one."""
 
 
 def fold_of_dive(dive: str) -> int:
@@ -49,12 +47,19 @@ def fold_of_dive(dive: str) -> int:
     return fold_of(f"{SOURCE} {dive}", FOLDS)
 
 
+def fold_number(text: str) -> int:
+    """A fold by its number; ArgumentTypeError for another word."""
+    if text not in map(str, range(FOLDS)):
+        raise argparse.ArgumentTypeError(f"{text} is not from 0 to {FOLDS - 1}")
+    return int(text)
+
+
 def run(args: argparse.Namespace) -> None:
     """Train what is missing, then find and read every picture by the finder that has not seen its dive."""
     need_torch()
     data, parts = find_data(args.data), Path(args.parts)
     start = None if args.start is None else Path(args.start)
-    settings = RegionTraining(args.steps, round(REFINER_SHARE * args.steps), args.precision, start)
+    settings = RegionTraining(precision=args.precision, start=start).of_steps(args.steps)
     pictures = read_pictures(data, LeftOut(), args.seed, args.jobs, parts, say)
     classifier = load_classifier(args.model)
     frames = read_divers(data)
@@ -83,9 +88,7 @@ def _selector(pictures: Pictures, parts: Path, fold: int, seed: int, settings: R
     folder = checkpoint_folder(file, told)
     if not file.is_file():
         say(f"fold {fold}: training a finder without its dives")
-        rest = pictures.without_divers(
-            lambda source: source.startswith(f"{SOURCE} ") and fold_of(source, FOLDS) == fold
-        )
+        rest = pictures.without_divers(lambda source: fold_of(source, FOLDS) == fold)
         write_selector(load_classical(), learn_choice(rest, folder, seed, settings, say), file)
     return file
 
@@ -105,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         "--steps", type=positive, default=STEPS, metavar="N", help=f"of each locator (default {STEPS})"
     )
     parser.add_argument(
-        "--fold", type=whole, action="append", metavar="N", help="only this one; may be repeated"
+        "--fold", type=fold_number, action="append", metavar="N", help="only this one; may be repeated"
     )
     parser.add_argument("--model", default=DEFAULT, help="reads what is found (default cnn)")
     parser.add_argument("--precision", choices=PRECISIONS, default="float32", help="see train regions")

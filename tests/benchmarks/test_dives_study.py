@@ -79,3 +79,10 @@ def test_a_folder_of_another_training_is_refused(monkeypatch, tmp_path, data, pi
     assert dives.main([*arguments, "--steps", "10"]) == 0
     assert dives.main([*arguments, "--steps", "20"]) == 2
     assert "holds parts of another training (locator_steps 10 and not 20" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("fold", ["5", "-1", "one"])
+def test_a_fold_that_there_is_not_is_refused(fold, tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        dives.main(["--parts", str(tmp_path), f"--fold={fold}"])
+    assert f"{fold} is not from 0 to 4" in capsys.readouterr().err

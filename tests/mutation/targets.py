@@ -60,6 +60,7 @@ GROUPS: dict[str, Group] = {
         _modules("lightgesture/hands", "hands", "pictures"),  # which are for looking at
         (
             "tests/app/test_front_end.py",
+            "tests/app/test_halves.py",
             "tests/app/test_hand_reader.py",
             "tests/app/test_hidden_hands.py",
             "tests/app/test_pipeline.py",

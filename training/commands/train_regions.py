@@ -1,7 +1,6 @@
 """`lightgesture train regions`: the nets and trees that tell hands from the rest of a picture."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 from lightgesture.console import say
@@ -89,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
         )
     settings = RegionTraining(precision=args.precision, start=start, keeps_classical=args.learned)
     if args.steps is not None:
-        settings = replace(settings, locator_steps=args.steps, refiner_steps=max(1, args.steps * 4 // 5))
+        settings = settings.of_steps(args.steps)
     try:
         with NeverSilent((lambda _: None) if args.quiet else say) as progress:
             if args.classical and start is not None:

@@ -38,7 +38,7 @@ def write_card(
             "real divers (divers)": sum(len(part.divers) for part in both),
             "composed pictures": len(pictures.composed) + len(pictures.unseen),
             "sets of negatives used": list(NEGATIVE_SETS),
-            "kept from the nets, for the trees": f"one in {ONE_IN} sources",
+            "kept from the nets, for the trees": f"one in {ONE_IN} sources, of real divers none",
         },
         CARD_KEY: without.to_card(),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "

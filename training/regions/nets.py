@@ -2,9 +2,9 @@
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Self
 
 from lightgesture.features.archive import read_archive
 from lightgesture.features.find.selector_file import LOCATOR, REFINER, SelectorError, load_nets
@@ -38,6 +38,10 @@ class RegionTraining:
     """Selector whose nets go on learning; None to begin with random weights."""
     keeps_classical: bool = field(default=False, repr=False)
     """Whether the classical choice is that of `start`, which must be given, and not fitted too."""
+
+    def of_steps(self, steps: int) -> Self:
+        """The same, so many steps of the locator, 2 or more, and four fifths as many of the refiner."""
+        return replace(self, locator_steps=steps, refiner_steps=max(1, steps * 4 // 5))
 
     @property
     def origin(self) -> str | None:

@@ -190,6 +190,14 @@ def test_other_steps_are_told_with_what_to_do(
     assert "draw patches" not in capsys.readouterr().err
 
 
+def test_a_training_that_went_on_tells_the_seconds_of_all_its_runs(folder: Path, tmp_path: Path) -> None:
+    assert train(folder, tmp_path / "mine.npz", "--quiet") == 0
+    (tmp_path / "mine.parts" / "seconds.json").write_text("1000.0", encoding="utf-8")
+    assert train(folder, tmp_path / "mine.npz", "--quiet") == 0
+    card = json.loads((tmp_path / "mine.json").read_text(encoding="utf-8"))
+    assert 1000 <= card["training"]["seconds"] < 1100
+
+
 def test_an_interrupted_training_speaks_of_the_training(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -33,8 +33,8 @@ def test_the_learned_choice_can_be_trained_alone(tmp_path, monkeypatch):
     nothing = Pictures(Material([], [], [], []), Material([], [], [], []), [], [])
     monkeypatch.setattr(train, "read_pictures", lambda *_: nothing)
     monkeypatch.setattr(train, "learn_choice", lambda *_: load_learned())
-    settings = RegionTraining(start=tmp_path / "start.npz", keeps_classical=True)
-    train.train_regions(tmp_path, tmp_path / "new.npz", settings=settings)
+    settings = RegionTraining(start=tmp_path / "start.npz")
+    train.train_regions(tmp_path, tmp_path / "new.npz", settings=settings, keeps_classical=True)
     assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
     card = json.loads((tmp_path / "new.json").read_text())
     assert card["classical_trees"] == "of that selector"

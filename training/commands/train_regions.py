@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(
             f"{alone} keeps the {kept} of another file; name it by --start, such as --start bundled"
         )
-    settings = RegionTraining(precision=args.precision, start=start, keeps_classical=args.learned)
+    settings = RegionTraining(precision=args.precision, start=start)
     if args.steps is not None:
         settings = settings.of_steps(args.steps)
     try:
@@ -94,7 +94,10 @@ def run(args: argparse.Namespace) -> int:
             if args.classical and start is not None:
                 train_classical(Path(args.data), out, start, args.seed, args.jobs, without, progress)
             else:
-                train_regions(Path(args.data), out, args.seed, args.jobs, without, settings, progress)
+                train_regions(
+                    *(Path(args.data), out, args.seed, args.jobs, without, settings, progress),
+                    keeps_classical=args.learned,
+                )
     except SelectorError as error:
         raise UsageError(f"--start: {error}") from error
     except KeyboardInterrupt:

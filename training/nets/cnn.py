@@ -1,6 +1,5 @@
 """From a manifest to a hand net and its card: the training of the CNN from end to end."""
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -17,6 +16,7 @@ from lightgesture.training.card import held_out_section, make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch, peak_memory_mib
 from lightgesture.training.nets.hand_samples import HandSamples
+from lightgesture.training.nets.spent_time import SpentTime
 from lightgesture.training.pool.kept_hands import kept_out
 from lightgesture.training.pool.kept_sources import (
     LEAST_FITTED,
@@ -92,8 +92,8 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
         with_second_look,
     )
 
-    started = time.monotonic()
     drawn = draw(training, out, progress)
+    progress = drawn.spent.kept_by(progress)
     rows, originals, pool, kept, classes = drawn.rows, drawn.originals, drawn.pool, drawn.kept, drawn.classes
     learnt = learn(pool, drawn.learnt_from, classes, training, drawn.folder, progress)
     model = in_integers(learnt, training)
@@ -117,7 +117,7 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
             "teachers": training.teachers,
             "settings": {"pool": asdict(training.pool), "net": asdict(net_settings(training))},
             "torch": str(torch.__version__),
-            "seconds": round(time.monotonic() - started),
+            "seconds": drawn.spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
         },
         "model": {
@@ -136,13 +136,15 @@ def train_cnn_to_file(training: CnnTraining, out: Path, progress: Progress) -> d
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Drawn:
-    """What a training learns from. folder: of its parts. kept: bool (n,), hands that are kept from the nets."""
+    """What a training learns from. folder: of its parts. kept: bool (n,), hands that are kept from the nets.
+    spent: its time so far."""
 
     rows: Sequence[HandRow]
     originals: Originals
     pool: PatchPool
     kept: NDArray[np.bool_]
     folder: Path
+    spent: SpentTime
 
     @property
     def classes(self) -> tuple[str, ...]:
@@ -169,6 +171,8 @@ def draw(training: CnnTraining, out: Path, progress: Progress, **more: str) -> D
         **more,
     }
     folder = checkpoint_folder(out, request)
+    spent = SpentTime(folder)
+    progress = spent.kept_by(progress)
     progress(f"reading {len(rows)} hands")
     originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, tenths(progress))
@@ -177,7 +181,7 @@ def draw(training: CnnTraining, out: Path, progress: Progress, **more: str) -> D
             f"{folder}: its patches were drawn without landmarks, and the nets learn without them; "
             "draw them anew with another --out"
         )
-    return Drawn(rows, originals, pool, kept_out(originals.hands), folder)
+    return Drawn(rows, originals, pool, kept_out(originals.hands), folder, spent)
 
 
 def learn(

@@ -6,7 +6,6 @@ changes.
 
 import hashlib
 import json
-import time
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -42,7 +41,6 @@ def train_look_to_file(
         with_second_look,
     )
 
-    started = time.monotonic()
     known = load_classifier(first)
     # Before the pool is drawn, which takes minutes.
     classes = in_order(row.token for row in read_rows(training.data, training.without))
@@ -50,6 +48,7 @@ def train_look_to_file(
         raise UsageError(f"{first}: is no net of the classes {', '.join(classes)}; train one with train cnn")
     small_net = small_net_section(first)
     drawn = draw(training, out, progress, first=sha256_of(first))
+    progress = drawn.spent.kept_by(progress)
     samples = HandSamples(drawn.pool, drawn.learnt_from, drawn.classes, MARGIN)
     how = replace(net_settings(training), steps=training.teacher_steps)
     larger = first_teacher(samples, how, training.seed, drawn.folder, progress)
@@ -71,7 +70,7 @@ def train_look_to_file(
             "seed": training.seed,
             "steps": {"larger_net": training.teacher_steps},
             "settings": {"pool": asdict(training.pool), "net": asdict(how)},
-            "seconds": round(time.monotonic() - started),
+            "seconds": drawn.spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
         },
         "model": {"temperature": model.temperature, "second_look": second_section(model)},

@@ -4,11 +4,13 @@ import json
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final
+from typing import Final, ParamSpec
 
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.checkpoints import REQUEST
 
+Told = ParamSpec("Told")
+"""What is told of the progress."""
 FILE: Final = "seconds.json"
 """What was spent until the last message, in the folder of the parts."""
 
@@ -35,16 +37,21 @@ class SpentTime:
         """Until now; None where they are unknown."""
         return None if self._before is None else self._before + self._clock() - self._began
 
+    @property
+    def whole_seconds(self) -> int | None:
+        """The same for a card, rounded."""
+        return None if self.seconds is None else round(self.seconds)
+
     def keep(self) -> None:
         """Write them down for the next run."""
         with replacing(self._file) as temporary:
             temporary.write_text(json.dumps(self.seconds), encoding="utf-8")
 
-    def kept_by(self, progress: Callable[[str], None]) -> Callable[[str], None]:
+    def kept_by(self, progress: Callable[Told, None]) -> Callable[Told, None]:
         """What tells progress, and keeps the seconds each time."""
 
-        def tell(text: str) -> None:
-            progress(text)
+        def tell(*told: Told.args, **more: Told.kwargs) -> None:
+            progress(*told, **more)
             self.keep()
 
         return tell

@@ -20,9 +20,15 @@ def write_card(
     without: LeftOut,
     settings: RegionTraining,
     pictures: Pictures,
-    seconds: float | None,
+    seconds: int | None,
+    *,
+    keeps_classical: bool,
 ) -> None:
-    """Write the card of the selector's file `out` beside it. seconds: of the training, None where unknown."""
+    """Write the card of the selector's file `out` beside it.
+
+    seconds: of the training, None where unknown. keeps_classical: the classical choice is that of the file from which
+    the nets went on.
+    """
     import sklearn
     import torch
 
@@ -47,9 +53,9 @@ def write_card(
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
         "seed": seed,
         "nets_went_on_from_the_selector_of_sha256": settings.origin,
-        "classical_trees": "of that selector" if settings.keeps_classical else "fitted with it",
+        "classical_trees": "of that selector" if keeps_classical else "fitted with it",
         "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
-        "seconds": None if seconds is None else round(seconds),
+        "seconds": seconds,
         "peak_memory_mib": peak_memory_mib(),
         "versions": {
             "numpy": np.__version__,

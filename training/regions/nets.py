@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, Self
 
@@ -36,8 +36,6 @@ class RegionTraining:
     """In which nets are reckoned while they learn, see `net_training.PRECISIONS`."""
     start: Path | None = None
     """Selector whose nets go on learning; None to begin with random weights."""
-    keeps_classical: bool = field(default=False, repr=False)
-    """Whether the classical choice is that of `start`, which must be given, and not fitted too."""
 
     def of_steps(self, steps: int) -> Self:
         """The same, so many steps of the locator, 2 or more, and four fifths as many of the refiner."""

@@ -36,8 +36,12 @@ def train_regions(
     without: LeftOut | None = None,
     settings: RegionTraining | None = None,
     progress: Progress = lambda _: None,
+    *,
+    keeps_classical: bool = False,
 ) -> None:
     """Train the selector and write it with its card (`out` with the suffix .json).
+
+    keeps_classical: the classical choice is that of the settings' `start`, which must be given, and is not fitted too.
 
     What is done already lies in a folder beside `out` and is used when the same command runs again; it may be removed
     when the file is written. Raises InputError, UsageError.
@@ -50,13 +54,15 @@ def train_regions(
         progress = spent.kept_by(progress)
         pictures = read_pictures(data, without, seed, jobs, folder, progress)
         learned = learn_choice(pictures, folder, seed, settings, progress)
-        if settings.keeps_classical:
+        if keeps_classical:
             classical = load_classical(settings.start)
         else:
             progress("fitting the classical trees")
             classical = _classical(data, pictures, without, seed)
         write_selector(classical, learned, out)
-        write_card(out, seed, without, settings, pictures, spent.seconds)
+        write_card(
+            out, seed, without, settings, pictures, spent.whole_seconds, keeps_classical=keeps_classical
+        )
 
 
 def train_classical(

@@ -1,6 +1,5 @@
 """From a manifest to a model file and its card: the training of the SVM from end to end."""
 
-import time
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from lightgesture.models import CLASSES
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_json, write_svm_model
 from lightgesture.training.nets.checkpoints import checkpoint_folder, peak_memory_mib
+from lightgesture.training.nets.spent_time import SpentTime
 from lightgesture.training.pool.originals import PoolSettings, read_originals
 from lightgesture.training.pool.patch_pool import make_pool
 from lightgesture.training.pool.pool_samples import pool_samples
@@ -53,7 +53,6 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
     removed when the files are written. Raises InputError for unreadable data, UsageError for classes that will not do
     and ModelError for samples or files that will not do; neither file is touched before the training is done.
     """
-    started = time.monotonic()
     rows = [] if training.data is None else read_rows(training.data, training.without)
     classes = in_order(row.token for row in rows) or CLASSES
     originals = read_originals(rows, training.backgrounds, training.scenes, training.divers, training.without)
@@ -63,6 +62,8 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
         "version": __version__,
     }
     folder = checkpoint_folder(out, request)
+    spent = SpentTime(folder)
+    progress = spent.kept_by(progress)
     pool = make_pool(originals, training.pool, training.seed, training.jobs, folder, progress)
     samples = pool_samples(
         pool,
@@ -81,7 +82,7 @@ def train_svm_to_file(training: SvmTraining, out: Path, progress: Progress) -> d
         "training": {
             "seed": training.seed,
             "settings": {"pool": asdict(training.pool), "svm": asdict(training.svm)},
-            "seconds": round(time.monotonic() - started),
+            "seconds": spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
         },
         "model": {

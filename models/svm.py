@@ -25,14 +25,13 @@ def radial_kernel(points: Float, centres: Float, gamma: float, squares: Float | 
     """
     if squares is None:
         squares = squared_lengths(centres)
-    squared = points @ centres.T
-    squared *= np.float32(-2.0)
-    squared += squared_lengths(points)[:, None]
-    squared += squares
+    # Doubled and scaled before the product, which has so many more numbers than the points.
+    powers = (points * np.float32(2.0 * gamma)) @ centres.T
+    powers -= (squared_lengths(points) * np.float32(gamma))[:, None]
+    powers -= squares * np.float32(gamma)
     # Rounding can leave a tiny negative distance.
-    np.maximum(squared, np.float32(0.0), out=squared)
-    squared *= np.float32(-gamma)
-    return np.asarray(np.exp(squared, out=squared), np.float32)
+    np.minimum(powers, np.float32(0.0), out=powers)
+    return np.asarray(np.exp(powers, out=powers), np.float32)
 
 
 def squared_lengths(rows: Float) -> Float:

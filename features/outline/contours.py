@@ -1,20 +1,18 @@
 """The outline of the hand inside its patch, and the contour numbers of the paper's region selection.
 
-The outline is found by colour, without a model of skin: Fisher's linear discriminant ("The Use of Multiple
-Measurements in Taxonomic Problems", 1936) of the pixels in the middle of the patch against those round it is the
-direction of colour in which this hand differs from this room or water; Otsu's threshold cuts along it.
+The outline is found by colour, without a model of skin (`likeness`); Otsu's threshold cuts along it.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.outline.likeness import hand_likeness, regions_of
 from lightgesture.features.types import Contour, Float
 
 Mask = NDArray[np.uint8]
@@ -60,9 +58,6 @@ SMALLEST: Final = 1e-12
 LOG_SMALLEST: Final = math.log10(SMALLEST)
 """Of it the logarithm is 0 in the vector."""
 
-FLAT: Final = 1e-9
-"""Deviations of colour, and ranges of it, that are nothing but rounding errors."""
-
 DEPTH_UNIT: Final = 256.0
 """OpenCV gives the depth of a convexity defect as an integer, in this share of a pixel."""
 
@@ -82,7 +77,7 @@ def contour_vectors(patches: NDArray[np.uint8], settings: ContourSettings | None
     vectors = np.zeros((len(patches), contour_length(settings)), np.float32)
     contours = {
         index: contour
-        for index, levels in enumerate(_hand_likeness(_reduced(patches, settings.size), settings))
+        for index, levels in enumerate(hand_likeness(_reduced(patches, settings.size), settings))
         if (contour := _hand_outline(levels, settings)) is not None
     }
     if contours:
@@ -97,7 +92,7 @@ def segment(patch: NDArray[np.uint8], settings: ContourSettings | None = None) -
 
 def segments(patches: NDArray[np.uint8], settings: ContourSettings) -> list[Mask]:
     """The mask of each patch, uint8 (n, size, size, 3); see `segment`."""
-    likeness = _hand_likeness(_reduced(patches, settings.size), settings)
+    likeness = hand_likeness(_reduced(patches, settings.size), settings)
     return [_middle_region(_cut(levels), settings) for levels in likeness]
 
 
@@ -124,7 +119,7 @@ def _hand_outline(levels: NDArray[np.uint8], settings: ContourSettings) -> Conto
     is_one_region = tree[0, 0, 0] < 0
     half = settings.size // 2
     # The pixel in the very middle mostly answers for all.
-    if is_one_region and (binary[half, half] or binary.reshape(-1)[_regions(settings).middle].any()):
+    if is_one_region and (binary[half, half] or binary.reshape(-1)[regions_of(settings).middle].any()):
         return _with_area(np.asarray(contours[0], np.int32))
     return outline(_middle_region(binary, settings))
 
@@ -132,7 +127,7 @@ def _hand_outline(levels: NDArray[np.uint8], settings: ContourSettings) -> Conto
 def _middle_region(binary: Mask, settings: ContourSettings) -> Mask:
     """Of what a mask keeps, the connected region that fills most of the middle."""
     count, labels = cv2.connectedComponents(binary, ltype=cv2.CV_16U)
-    in_the_middle = np.bincount(np.asarray(labels).reshape(-1)[_regions(settings).middle], minlength=2)
+    in_the_middle = np.bincount(np.asarray(labels).reshape(-1)[regions_of(settings).middle], minlength=2)
     in_the_middle[0] = 0
     chosen = int(in_the_middle.argmax())
     if not in_the_middle[chosen]:
@@ -298,80 +293,3 @@ def _centre(moments: Moments) -> tuple[float, float, float]:
     """x and y of the centroid and the square root of the area."""
     area = max(moments["m00"], 1.0)
     return moments["m10"] / area, moments["m01"] / area, area**0.5
-
-
-def _hand_likeness(patches: NDArray[np.uint8], settings: ContourSettings) -> NDArray[np.uint8]:
-    """Patches, uint8 (n, size, size, 3), each along the colour direction in which its middle differs from its rim,
-    stretched to 0 to 255: uint8 (n, size, size)."""
-    regions = _regions(settings)
-    count, size = len(patches), settings.size
-    # Channel by channel in memory: products of few rows are then quick.
-    planes = np.ascontiguousarray(patches.reshape(count, size * size, 3).transpose(0, 2, 1))
-    colours = np.asarray(cv2.LUT(planes.reshape(3 * count, -1), _square_roots()), np.float64)
-    colours = colours.reshape(count, 3, -1)
-    # Products of each patch by itself: in one of all together, what a patch gives would depend on the others' number,
-    # by a rounding error that can move a pixel over the threshold.
-    centres = colours @ regions.shares
-    # The scatter round both centres: the mean products less the products of the means.
-    scatter = (colours * regions.both) @ colours.transpose(0, 2, 1)
-    scatter -= centres @ centres.transpose(0, 2, 1)
-    scatter += regions.evenness
-    differences = centres[..., :1] - centres[..., 1:]
-    directions = np.empty((count, 3, 1))
-    for direction, one, difference in zip(directions, scatter, differences, strict=True):
-        cv2.solve(one, difference, direction, cv2.DECOMP_CHOLESKY)
-    return _stretched(directions.transpose(0, 2, 1) @ colours, regions).reshape(count, size, size)
-
-
-def _stretched(values: NDArray[np.float64], regions: "_Regions") -> NDArray[np.uint8]:
-    """Rows of (n, 1, p), in deviations from their means and with the bump on it, brought to 0 to 255; written to."""
-    values -= (values @ regions.even)[..., None]
-    deviations = np.sqrt(np.square(values) @ regions.even)
-    # Of a flat patch nothing but the bump is left.
-    deviations[deviations <= FLAT] = np.inf
-    values /= deviations[..., None]
-    values += regions.bump
-    values -= values.min(axis=2, keepdims=True)
-    values *= 255.0 / np.maximum(values.max(axis=2, keepdims=True), FLAT)
-    return values.astype(np.uint8)
-
-
-@lru_cache(maxsize=1)
-def _square_roots() -> NDArray[np.float64]:
-    return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float64)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Regions:
-    """Of a patch of p pixels. middle: indices of the pixels taken for hand. shares: float64 (p, 2), of each pixel in
-    the mean of the middle and of the rim. both: (p,), their sum. even: (p,), 1 / p. bump: (p,), mean 0, deviation
-    `prior`. evenness: (3, 3), what is added to the scatter."""
-
-    middle: NDArray[np.intp]
-    shares: NDArray[np.float64]
-    both: NDArray[np.float64]
-    even: NDArray[np.float64]
-    bump: NDArray[np.float64]
-    evenness: NDArray[np.float64]
-
-
-@lru_cache(maxsize=4)
-def _regions(settings: ContourSettings) -> _Regions:
-    size = settings.size
-    axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-    across, down = axis[None, :] / settings.middle_width, axis[:, None] / settings.middle_height
-    middle = across**2 + down**2 < 1.0
-    near = max(1, round(settings.rim * size))
-    rim = np.zeros((size, size), bool)
-    rim[:near] = True
-    rim[: size * 3 // 4, :near] = rim[: size * 3 // 4, -near:] = True
-    bump = np.exp(-(axis[None, :] ** 2) - axis[:, None] ** 2)
-    shares = np.stack([region.reshape(-1) / region.sum() for region in (middle, rim)])
-    return _Regions(
-        np.flatnonzero(middle),
-        np.asfortranarray(shares.T),
-        shares.sum(axis=0),
-        np.full(size * size, 1.0 / size**2),
-        (settings.prior * (bump - bump.mean()) / bump.std()).reshape(-1),
-        settings.evenness * np.eye(3),
-    )

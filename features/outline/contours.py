@@ -6,13 +6,14 @@ The outline is found by colour, without a model of skin (`likeness`); Otsu's thr
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lightgesture.features.outline.likeness import hand_likeness, regions_of
+from lightgesture.features.outline.likeness import Regions, hand_likeness, make_regions
 from lightgesture.features.types import Contour, Float
 
 Mask = NDArray[np.uint8]
@@ -77,7 +78,7 @@ def contour_vectors(patches: NDArray[np.uint8], settings: ContourSettings | None
     vectors = np.zeros((len(patches), contour_length(settings)), np.float32)
     contours = {
         index: contour
-        for index, levels in enumerate(hand_likeness(_reduced(patches, settings.size), settings))
+        for index, levels in enumerate(hand_likeness(_reduced(patches, settings.size), _regions(settings)))
         if (contour := _hand_outline(levels, settings)) is not None
     }
     if contours:
@@ -92,8 +93,14 @@ def segment(patch: NDArray[np.uint8], settings: ContourSettings | None = None) -
 
 def segments(patches: NDArray[np.uint8], settings: ContourSettings) -> list[Mask]:
     """The mask of each patch, uint8 (n, size, size, 3); see `segment`."""
-    likeness = hand_likeness(_reduced(patches, settings.size), settings)
+    likeness = hand_likeness(_reduced(patches, settings.size), _regions(settings))
     return [_middle_region(_cut(levels), settings) for levels in likeness]
+
+
+@lru_cache(maxsize=4)
+def _regions(settings: ContourSettings) -> Regions:
+    axes = settings.middle_width, settings.middle_height
+    return make_regions(settings.size, axes, settings.rim, settings.evenness, settings.prior)
 
 
 def _reduced(patches: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
@@ -119,7 +126,7 @@ def _hand_outline(levels: NDArray[np.uint8], settings: ContourSettings) -> Conto
     is_one_region = tree[0, 0, 0] < 0
     half = settings.size // 2
     # The pixel in the very middle mostly answers for all.
-    if is_one_region and (binary[half, half] or binary.reshape(-1)[regions_of(settings).middle].any()):
+    if is_one_region and (binary[half, half] or binary.reshape(-1)[_regions(settings).middle].any()):
         return _with_area(np.asarray(contours[0], np.int32))
     return outline(_middle_region(binary, settings))
 
@@ -127,7 +134,7 @@ def _hand_outline(levels: NDArray[np.uint8], settings: ContourSettings) -> Conto
 def _middle_region(binary: Mask, settings: ContourSettings) -> Mask:
     """Of what a mask keeps, the connected region that fills most of the middle."""
     count, labels = cv2.connectedComponents(binary, ltype=cv2.CV_16U)
-    in_the_middle = np.bincount(np.asarray(labels).reshape(-1)[regions_of(settings).middle], minlength=2)
+    in_the_middle = np.bincount(np.asarray(labels).reshape(-1)[_regions(settings).middle], minlength=2)
     in_the_middle[0] = 0
     chosen = int(in_the_middle.argmax())
     if not in_the_middle[chosen]:

@@ -7,14 +7,11 @@ water.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from lightgesture.features.outline.contours import ContourSettings
 
 FLAT: Final = 1e-9
 """Deviations of colour, and ranges of it, that are nothing but rounding errors."""
@@ -39,34 +36,32 @@ class Regions:
     evenness: NDArray[np.float64]
 
 
-@lru_cache(maxsize=4)
-def regions_of(settings: "ContourSettings") -> Regions:
-    """What the settings take for hand and for background, made once."""
-    size = settings.size
+def make_regions(
+    size: int, middle: tuple[float, float], rim: float, evenness: float, prior: float
+) -> Regions:
+    """Of a patch `size` pixels wide: middle, its half axes along x and y; all as `ContourSettings` has them."""
     axis = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-    across, down = axis[None, :] / settings.middle_width, axis[:, None] / settings.middle_height
-    middle = across**2 + down**2 < 1.0
-    near = max(1, round(settings.rim * size))
-    rim = np.zeros((size, size), bool)
-    rim[:near] = True
-    rim[: size * 3 // 4, :near] = rim[: size * 3 // 4, -near:] = True
+    is_middle = (axis[None, :] / middle[0]) ** 2 + (axis[:, None] / middle[1]) ** 2 < 1.0
+    near = max(1, round(rim * size))
+    is_rim = np.zeros((size, size), bool)
+    is_rim[:near] = True
+    is_rim[: size * 3 // 4, :near] = is_rim[: size * 3 // 4, -near:] = True
     bump = np.exp(-(axis[None, :] ** 2) - axis[:, None] ** 2)
-    shares = np.stack([region.reshape(-1) / region.sum() for region in (middle, rim)])
+    shares = np.stack([region.reshape(-1) / region.sum() for region in (is_middle, is_rim)])
     return Regions(
-        np.flatnonzero(middle),
+        np.flatnonzero(is_middle),
         np.asfortranarray(shares.T),
         shares.sum(axis=0),
         np.full(size * size, 1.0 / size**2),
-        (settings.prior * (bump - bump.mean()) / bump.std()).reshape(-1),
-        settings.evenness * np.eye(3),
+        (prior * (bump - bump.mean()) / bump.std()).reshape(-1),
+        evenness * np.eye(3),
     )
 
 
-def hand_likeness(patches: NDArray[np.uint8], settings: "ContourSettings") -> NDArray[np.uint8]:
+def hand_likeness(patches: NDArray[np.uint8], regions: Regions) -> NDArray[np.uint8]:
     """Patches, uint8 (n, size, size, 3), each along the colour direction in which its middle differs from its rim,
     stretched to 0 to 255: uint8 (n, size, size)."""
-    regions = regions_of(settings)
-    count, size = len(patches), settings.size
+    count, size = patches.shape[:2]
     # Channel by channel in memory: products of few rows are then quick.
     planes = np.ascontiguousarray(patches.reshape(count, size * size, 3).transpose(0, 2, 1))
     colours = np.asarray(cv2.LUT(planes.reshape(3 * count, -1), _square_roots()), np.float64)

@@ -25,10 +25,11 @@ def read_whole(file: str | os.PathLike[str], most_bytes: int) -> bytes:
         before = os.fstat(stream.fileno())
         if not stat.S_ISREG(before.st_mode):
             raise FileRefusedError(errno.EINVAL, "is no regular file")
-        content = stream.read(most_bytes + 1)
+        if before.st_size > most_bytes:
+            raise FileRefusedError(errno.EFBIG, f"is larger than {_size(most_bytes)}")
+        # A byte more than there is, so that one that grows is seen to. Room is made for all that is asked for.
+        content = stream.read(before.st_size + 1)
         after = os.fstat(stream.fileno())
-    if len(content) > most_bytes:
-        raise FileRefusedError(errno.EFBIG, f"is larger than {_size(most_bytes)}")
     is_same = (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
     if not is_same or len(content) != after.st_size:
         raise FileRefusedError(errno.EAGAIN, "changed while it was read; read it again when it is whole")

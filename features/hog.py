@@ -56,11 +56,12 @@ def hog(patches: NDArray[np.uint8], settings: HogSettings | None = None) -> Floa
     settings = settings or HogSettings()
     length = hog_length(patches.shape[1], settings)
     inner = slice(settings.rim, patches.shape[1] - settings.rim)
-    patches = np.ascontiguousarray(patches[:, inner, inner])
-    count, size = patches.shape[:2]
+    # Channel by channel in memory.
+    planes = np.ascontiguousarray(patches[:, inner, inner].transpose(3, 0, 1, 2))
+    count, size = planes.shape[1:3]
     pooling = _pooling(size, settings.cell)
     cells = len(pooling)
-    votes = _votes(patches, settings).reshape(count, size, size * settings.bins)
+    votes = _votes(planes, settings).reshape(count, size, size * settings.bins)
     rows = (pooling @ votes).reshape(count, cells, size, settings.bins)
     histograms = np.asarray(pooling @ rows, np.float32)
     return _normalised_blocks(histograms, settings).reshape(count, length)
@@ -79,14 +80,23 @@ def _square_roots() -> Float:
     return np.asarray(np.sqrt(np.arange(256) / 255.0), np.float32)
 
 
-def _gradients(patches: NDArray[np.uint8]) -> tuple[Float, Float]:
-    """Centred differences along x and y of the channel in which they are largest, float32 (n, size, size)."""
-    count, size, _, channels = patches.shape
-    planes = np.asarray(cv2.split(patches.reshape(count * size, size, channels)), np.uint8)
-    compressed = cv2.LUT(planes.reshape(-1, size), _square_roots()).reshape(channels, count, size, size)
-    along_x, along_y = np.zeros_like(compressed), np.zeros_like(compressed)
-    np.subtract(compressed[..., 2:], compressed[..., :-2], out=along_x[..., 1:-1])
-    np.subtract(compressed[..., 2:, :], compressed[..., :-2, :], out=along_y[..., 1:-1, :])
+def _differences(values: Float, step: int, shape: tuple[int, ...]) -> Float:
+    """Of the values so many places on and so many back, all in one row; nothing at both ends of it."""
+    row = values.reshape(-1)
+    differences = np.empty_like(row)
+    np.subtract(row[2 * step :], row[: -2 * step], out=differences[step:-step])
+    return differences.reshape(shape)
+
+
+def _gradients(planes: NDArray[np.uint8]) -> tuple[Float, Float, Float]:
+    """Centred differences along x and y of the channel in which they are largest, and the sum of their squares there,
+    float32 (n, size, size) each."""
+    channels, _, size = planes.shape[:3]
+    compressed = np.asarray(cv2.LUT(planes.reshape(-1, size), _square_roots()), np.float32)
+    along_x, along_y = _differences(compressed, 1, planes.shape), _differences(compressed, size, planes.shape)
+    # No pixel of the edge has two neighbours across it.
+    along_x[..., :: size - 1] = 0.0
+    along_y[..., :: size - 1, :] = 0.0
     squared = along_x * along_x + along_y * along_y
     strongest_x, strongest_y, largest = along_x[0], along_y[0], squared[0]
     for channel in range(1, channels):
@@ -95,27 +105,30 @@ def _gradients(patches: NDArray[np.uint8]) -> tuple[Float, Float]:
         for strongest, along in ((strongest_x, along_x), (strongest_y, along_y)):
             cv2.copyTo(along[channel].reshape(-1, size), mask, strongest.reshape(-1, size))
         np.maximum(largest, squared[channel], out=largest)
-    return strongest_x, strongest_y
+    return strongest_x, strongest_y, largest
 
 
-def _votes(patches: NDArray[np.uint8], settings: HogSettings) -> Float:
+def _votes(planes: NDArray[np.uint8], settings: HogSettings) -> Float:
     """Gradient magnitude shared between the two nearest directions, float32 (n, size, size, bins)."""
-    along_x, along_y = _gradients(patches)
+    along_x, along_y, squared = _gradients(planes)
     bins = settings.bins
     position = np.arctan2(along_y, along_x).reshape(-1)
     position *= np.float32(bins / (2.0 * np.pi if settings.signed else np.pi))
-    # Positive, so that cutting off the fraction rounds down; the bins of a turn more are the same bins.
+    # Positive; the bins of a turn more are the same bins.
     position += np.float32(bins)
-    lower = position.astype(np.intp)
-    position -= lower
-    magnitude = np.sqrt(along_x * along_x + along_y * along_y).reshape(-1)
-    upper_share = magnitude * position
+    whole = np.floor(position)
+    lower = whole.astype(np.intp)
+    position -= whole
+    magnitude = np.sqrt(squared, out=squared).reshape(-1)
+    upper_share = np.multiply(magnitude, position, out=position)
     magnitude -= upper_share
     votes = np.zeros(len(lower) * bins, np.float32)
     first = np.arange(0, len(votes), bins)
     turns = _turns(bins)
-    votes[first + turns[lower]] = magnitude
-    votes[first + turns[lower + 1]] += upper_share
+    # Neighbouring bins are two, so that neither vote overwrites the other.
+    votes[first + turns.take(lower)] = magnitude
+    lower += 1
+    votes[first + turns.take(lower)] = upper_share
     return votes.reshape(*along_x.shape, bins)
 
 

@@ -21,18 +21,17 @@ from lightgesture.models.svm_file import SvmModel
 def radial_kernel(points: Float, centres: Float, gamma: float, squares: Float | None = None) -> Float:
     """exp(-gamma |z - c|²) of every one of `points` (n, p) with every one of `centres` (m, p), float32 (n, m).
 
-    squares: |c|² of the centres, (m,), which for two hands take longer than all the rest.
+    squares: gamma |c|² of the centres, (m,), which for two hands take longer than all the rest.
     """
     if squares is None:
-        squares = squared_lengths(centres)
-    squared = points @ centres.T
-    squared *= np.float32(-2.0)
-    squared += squared_lengths(points)[:, None]
-    squared += squares
+        squares = squared_lengths(centres) * np.float32(gamma)
+    # Doubled and scaled before the product, which has so many more numbers than the points.
+    powers = (points * np.float32(2.0 * gamma)) @ centres.T
+    powers -= (squared_lengths(points) * np.float32(gamma))[:, None]
+    powers -= squares
     # Rounding can leave a tiny negative distance.
-    np.maximum(squared, np.float32(0.0), out=squared)
-    squared *= np.float32(-gamma)
-    return np.asarray(np.exp(squared, out=squared), np.float32)
+    np.minimum(powers, np.float32(0.0), out=powers)
+    return np.asarray(np.exp(powers, out=powers), np.float32)
 
 
 def squared_lengths(rows: Float) -> Float:
@@ -47,7 +46,7 @@ class SvmClassifier:
         # Column by column in memory: the product with few hands then reads the centres in one sweep.
         self.model = replace(model, centres=np.asfortranarray(model.centres))
         self.classes = model.classes
-        self._squares = squared_lengths(model.centres)
+        self._squares = squared_lengths(model.centres) * np.float32(model.gamma)
 
     def project(self, vectors: Float) -> Float:
         """Feature vectors (n, d) in the kernel's space, float32 (n, p)."""

@@ -68,7 +68,8 @@ class AnnotatedVideo:
             self._sound.add_to(self._container)
         # By OpenCV, several times as fast as FFmpeg's own way from BGR, and truer at the edges of letters.
         planes = cv2.cvtColor(_fitted(picture, self._size), cv2.COLOR_BGR2YUV_I420)
-        frame = av.VideoFrame.from_ndarray(np.asarray(planes, np.uint8), format=PIXELS)
+        # The encoder copies what it is lent, so that there is one copy and not two.
+        frame = av.VideoFrame.from_numpy_buffer(np.asarray(planes, np.uint8), format=PIXELS)
         self._tick = max(self._tick + 1, round(time_s * TICKS_PER_S))
         self._sound.write_until(self._tick / TICKS_PER_S)
         frame.pts, frame.time_base = self._tick, Fraction(1, TICKS_PER_S)

@@ -32,6 +32,10 @@ USUAL_STEPS: Final = 1.5
 SNIFFED_BYTES: Final = 4096
 """Bytes at the start of a file looked at to tell text from video."""
 
+SMALL_PIXELS: Final = 640 * 480
+"""Pixels of a frame up to which one thread decodes: handing frames between threads takes as long as they save, and each
+thread holds memory of its own and a frame back."""
+
 ROOM: Final = 64 << 20
 """Bytes that are enough to open any video: several times what was seen."""
 
@@ -240,10 +244,12 @@ def _choose(container: "InputContainer", path: str) -> "VideoStream":
     for other in container.streams:
         if other.index != stream.index:
             other.discard = Discard.all
-    if multiprocessing.parent_process() is None:
-        stream.codec_context.thread_type = "AUTO"
-    else:  # one of several processes, a video each: threads would cost a third more in all
-        stream.codec_context.thread_count = 1
+    # One of several processes, a video each: threads would cost a third more in all.
+    is_one_of_many = multiprocessing.parent_process() is not None
+    if is_one_of_many or context.width * context.height <= SMALL_PIXELS:
+        context.thread_count = 1
+    else:
+        context.thread_type = "AUTO"
     return stream
 
 

@@ -1,7 +1,9 @@
+import math
+
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from lightgesture.features.outline.contours import (
@@ -144,3 +146,44 @@ def test_the_signature_does_not_depend_on_size_or_place() -> None:
     assert contour is not None
     larger = radial_signature(contour * 3 + 500, 24)
     np.testing.assert_allclose(larger, radial_signature(contour, 24), atol=0.02)
+
+
+def slow_signature(contour: np.ndarray, directions: int) -> list[float]:
+    """One point of the outline at a time."""
+    moments = cv2.moments(contour)
+    x, y = moments["m10"] / moments["m00"], moments["m01"] / moments["m00"]
+    reaches = [0.0] * directions
+    for across, down in (contour - np.array([x, y])).tolist():
+        direction = math.floor(math.atan2(down, across) / (2 * math.pi) * directions + 0.5) % directions
+        reaches[direction] = max(reaches[direction], math.hypot(across, down) / moments["m00"] ** 0.5)
+    return [
+        reach or min(reaches[place - 1], reaches[(place + 1) % directions])
+        for place, reach in enumerate(reaches)
+    ]
+
+
+@pytest.mark.parametrize("directions", [5, 8, 24, 25, 90])
+def test_the_signature_equals_the_slow_reference(directions: int) -> None:
+    for fingers in range(5):
+        contour = outline(drawn_hand(fingers, 48))
+        assert contour is not None
+        expected = slow_signature(contour, directions)
+        np.testing.assert_allclose(radial_signature(contour, directions), expected, rtol=1e-12)
+
+
+@example(8958, 3)  # where rounding decides about a pixel
+@given(st.integers(0, 2**32 - 1), st.integers(0, 6))
+def test_the_outline_of_a_patch_is_that_of_its_segment(seed: int, blur: int) -> None:
+    """Whether what is kept hangs together, lies in pieces or has pieces in its holes; and whatever is beside it."""
+    patches = np.random.default_rng(seed).integers(0, 256, (2, 32, 32, 3)).astype(np.uint8)
+    if blur:
+        patches = np.stack([cv2.GaussianBlur(patch, (0, 0), blur / 2) for patch in patches])
+    for patch, vector in zip(patches, contour_vectors(patches), strict=True):
+        contour = outline(segment(patch))
+        numbers = np.zeros(contour_length(), np.float32) if contour is None else contour_numbers(contour)
+        np.testing.assert_allclose(vector, numbers, atol=1e-6)
+
+
+def test_a_flat_patch_without_a_bump_has_no_outline() -> None:
+    patch = np.full((1, 32, 32, 3), 90, np.uint8)
+    assert not contour_vectors(patch, ContourSettings(prior=0.0)).any()

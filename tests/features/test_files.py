@@ -1,6 +1,7 @@
 """Files of others are read once, whole, and within bounds."""
 
 import os
+import tracemalloc
 
 import pytest
 
@@ -53,3 +54,16 @@ def test_a_file_that_changes_while_it_is_read_is_refused(tmp_path, monkeypatch, 
     monkeypatch.setattr(files.os, "fstat", look)
     with pytest.raises(FileRefusedError, match="changed while it was read"):
         read_whole(path, 1000)
+
+
+def test_room_is_made_for_what_there_is_and_not_for_what_may_be(tmp_path):
+    """Where memory is bounded, as by `ulimit -v`, sixty megabytes that are never touched are refused too."""
+    path = tmp_path / "a"
+    path.write_bytes(b"x" * 100)
+    tracemalloc.start()
+    try:
+        read_whole(path, 64 << 20)
+        most = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert most < 1 << 20

@@ -52,3 +52,10 @@ def test_logarithms_keep_sign_and_order(values: list[float]) -> None:
     kept = np.abs(moments) > SMALLEST * 1.001
     assert np.array_equal(np.sign(logarithms[kept]), np.sign(moments[kept]))
     assert (np.diff(logarithms[np.argsort(moments)]) >= 0).all()
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(3, 12))
+def test_equals_opencv(seed: int, points: int) -> None:
+    outline = np.random.default_rng(seed).integers(0, 64, (points, 2)).astype(np.int32)
+    expected = cv2.HuMoments(cv2.moments(outline)).reshape(-1)
+    np.testing.assert_allclose(hu_moments(outline), expected, rtol=1e-9, atol=1e-15)

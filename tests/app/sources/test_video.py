@@ -1,7 +1,9 @@
 """Frames and times of whole videos, whatever their codec, colours and clocks."""
 
 import json
+import os
 from datetime import UTC, datetime
+from pathlib import Path
 
 import av
 import numpy as np
@@ -169,3 +171,20 @@ def test_stamps_that_jump_back_by_a_day():
     assert (clock.read(3.0), clock.jump_s) == (0.15, pytest.approx(86_397.05))
     assert (clock.read(3.1), clock.jump_s) == (0.25, 0.0)
     assert (clock.read(None), clock.read(None, 3)) == (0.35, 0.65)
+
+
+@pytest.mark.skipif(
+    not Path("/proc/self/task").is_dir() or os.cpu_count() == 1, reason="threads cannot be told"
+)
+@pytest.mark.parametrize(("size", "is_threaded"), [((640, 480), False), ((640, 496), True)])
+def test_threads_decode_large_frames_alone(write_video, size, is_threaded):
+    """Each holds memory, and a frame back."""
+    path = write_video("a.mp4", noise(3, size), "mpeg4")
+
+    def decoders():
+        names = [task.joinpath("comm").read_text() for task in Path("/proc/self/task").iterdir()]
+        return sum(name.startswith("av:mpeg4") for name in names)
+
+    before = decoders()
+    with open_source(str(path)):
+        assert (decoders() > before) == is_threaded

@@ -1,11 +1,19 @@
 """Videos with damaged or lost places are read over, and it is told."""
 
 import av
+import pytest
 
+from lightgesture.sources import video
 from lightgesture.sources.decoding import StreamDecoder
 from tests.app.sources.video_makers import read, times
 
 from .conftest import RATE, noise
+
+
+@pytest.fixture(autouse=True, params=[video.SMALL_PIXELS, 0], ids=["one thread", "threads"])
+def decoding_threads(request, monkeypatch):
+    """Small pictures in one thread, as they are decoded, and in several, as large ones are."""
+    monkeypatch.setattr(video, "SMALL_PIXELS", request.param)
 
 
 def damage(path, start=0.5, length=None, pattern=7):

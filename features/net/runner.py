@@ -3,6 +3,7 @@
 import math
 import struct
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, Final, Literal, Protocol
 
 import numpy as np
@@ -101,11 +102,13 @@ class LiteRtRunner:
         self._interpreter = interpreter.Interpreter
         # Written anew of integers that were checked, two milliseconds a net: LiteRT reads and writes beyond its memory
         # where a table of the file is not as it should be, and a model may come from anybody.
-        self._network, self._file = network, to_litert(network)
-        if self._file.content != network.litert.content:
+        written = to_litert(network)
+        if written.content != network.litert.content:
             raise NetworkError(
                 "LiteRT does not take the .tflite file (it is another than its layout describes); train it again"
             )
+        # Equal bytes are held once.
+        self._network, self._file = network, replace(written, content=network.litert.content)
         # Every net but the locator before a camera of another shape sees no other size than its training's.
         self._planned = {tuple(network.inputs.values()): self._plan(dict(network.inputs))}
 

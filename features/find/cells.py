@@ -46,11 +46,13 @@ class CellLoops:
     """The passes over pixels and over cells.
 
     sums: (luma, skin, dx, dy), uint8 (h, w) twice and int16 (h, w) twice, -> `Sums`. cells: (sums, boxes), boxes int32
-        (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²).
+        (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²). areas: regions -> float64 (n, 2), the area that each outline
+        encloses and that of its convex hull.
     """
 
     sums: Callable[[Image, Image, NDArray[np.int16], NDArray[np.int16]], Sums]
     cells: Callable[[Sums, NDArray[np.int32]], Float]
+    areas: Callable[[Proposals], NDArray[np.float64]]
 
 
 # The square root lifts the dark end, where a back-lit hand differs from the wall by two grey levels.
@@ -73,16 +75,16 @@ def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellL
     """
     if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
-    cells = (loops or PLAIN).cells(sums, regions.boxes)
-    return np.concatenate([cells, _shapes(regions, size)], axis=1)
+    loops = loops or PLAIN
+    shapes = _shapes(regions, loops.areas(regions), size)
+    return np.concatenate([loops.cells(sums, regions.boxes), shapes], axis=1)
 
 
-def _shapes(regions: Proposals, size: tuple[int, int]) -> Float:
-    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution."""
+def _shapes(regions: Proposals, areas: NDArray[np.float64], size: tuple[int, int]) -> Float:
+    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution. areas: see
+    `CellLoops`."""
     x, y, width, height = regions.boxes.T.astype(np.float64)
-    area = np.array([cv2.contourArea(contour) for contour in regions.contours])
-    hull = np.array([cv2.contourArea(cv2.convexHull(contour)) for contour in regions.contours])
-    length = np.array([len(contour) for contour in regions.contours])
+    area, hull = areas.T
     rows = np.empty((len(regions), SHAPE_NUMBERS), np.float32)
     rows[:, 0] = (x + width / 2) / size[0]
     rows[:, 1] = (y + height / 2) / size[1]
@@ -91,7 +93,7 @@ def _shapes(regions: Proposals, size: tuple[int, int]) -> Float:
     rows[:, 4] = width / height
     rows[:, 5] = area / (width * height)
     rows[:, 6] = area / np.maximum(hull, 1.0)
-    rows[:, 7] = length / np.sqrt(np.maximum(area, 1.0))
+    rows[:, 7] = regions.lengths / np.sqrt(np.maximum(area, 1.0))
     rows[:, 8] = regions.cut
     return rows
 
@@ -143,4 +145,11 @@ def _plain_cells(sums: Sums, boxes: NDArray[np.int32]) -> Float:
     return found.reshape(len(boxes), (3 + DIRECTIONS) * count)
 
 
-PLAIN: Final = CellLoops(_plain_sums, _plain_cells)
+def _plain_areas(regions: Proposals) -> NDArray[np.float64]:
+    pairs = [
+        (cv2.contourArea(contour), cv2.contourArea(cv2.convexHull(contour))) for contour in regions.contours
+    ]
+    return np.array(pairs, np.float64).reshape(-1, 2)
+
+
+PLAIN: Final = CellLoops(_plain_sums, _plain_cells, _plain_areas)

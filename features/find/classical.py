@@ -21,13 +21,13 @@ from lightgesture.features.find.candidates import Rows, best_distinct, candidate
 from lightgesture.features.find.cells import PLAIN, CellLoops
 from lightgesture.features.find.proposals import (
     LEVELS,
-    Distinct,
     Proposals,
+    RegionLoops,
     fill_contour,
-    plain_distinct,
     whole_regions,
     without_forearms,
 )
+from lightgesture.features.find.proposals import PLAIN as PLAIN_REGIONS
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
 from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import FlatTrees, Trees, Walk, plain_walk
@@ -54,7 +54,7 @@ class Loops:
 
     skin: SkinLoops = PLAIN_SKIN
     cells: CellLoops = PLAIN
-    distinct: Distinct = plain_distinct
+    regions: RegionLoops = PLAIN_REGIONS
     walk: Walk = plain_walk
 
 
@@ -86,7 +86,7 @@ class Scorer:
 
         levels: of `whole_regions`.
         """
-        whole = whole_regions(scene.skin, levels, self._loops.distinct)
+        whole = whole_regions(scene.skin, levels, self._loops.regions)
         rows = cells.describe(scene.sums, whole, scene.size, self._loops.cells)
         seen, rows = standing_out(
             scene, whole, rows, self._glance.scores(rows, self._loops.walk), self._loops
@@ -119,7 +119,7 @@ def with_bank(rows: Float, regions: Proposals, bank: Bank) -> Float:
 def mean_colour(colour: ColourMap, proposals: Proposals, index: int) -> Float:
     """float32 (3,): mean blue, green and red inside the outline of a proposal, 0 to 1."""
     x, y, width, height = proposals.box(index)
-    mask = fill_contour(proposals.contours[index], (x, y, width, height))
+    mask = fill_contour(proposals.contour(index), (x, y, width, height))
     means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
     return np.array(means, np.float32) / np.float32(255.0)
 
@@ -154,7 +154,7 @@ def _region(
 ) -> HandRegion:
     """A proposal in source pixels."""
     boxes = scale_boxes(proposals.boxes[[index, *extents]], colour.scale, colour.source_size)
-    contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
+    contour = np.rint((proposals.contour(index) + 0.5) * np.array(colour.scale)).astype(np.int32)
     return HandRegion(boxes[0], contour, None, min(max(score, 0.0), 1.0), tuple(boxes[1:]))
 
 

@@ -22,6 +22,8 @@ from lightgesture.features.skin_map import FINE, SHARE_BITS
 # Numba has no types that a type checker knows.
 Array = Any
 
+HELPERS = ()
+"""What the loops call: nothing."""
 COUNT = CELLS * CELLS
 STEP_UNIT = 10 * CELLS
 FIRST_STEP = 5 * CELLS - CELLS * CONTEXT_TENTHS // 2

@@ -11,7 +11,7 @@ from the palm's centre. Fingers stay out of this because a raised hand has them 
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -59,17 +59,46 @@ LEAST_HEIGHT: Final = 5
 class Proposals:
     """Regions of one frame in pixels of the working picture.
 
-    boxes: int32 (n, 4). contours: n arrays int32 (k, 2). levels: uint8 (n,), the threshold at which
-    each stands alone. cut: bool (n,), True where a forearm was cut off.
+    boxes: int32 (n, 4). points: int32 (m, 2), outlines one after the other, perhaps more than these regions'. starts,
+    lengths: int64 (n,), where in `points` each outline begins and how many it has. levels: uint8 (n,), the threshold at
+    which each stands alone. cut: bool (n,), True where a forearm was cut off.
     """
 
     boxes: NDArray[np.int32]
-    contours: tuple[Contour, ...]
+    points: NDArray[np.int32]
+    starts: NDArray[np.int64]
+    lengths: NDArray[np.int64]
     levels: NDArray[np.uint8]
     cut: NDArray[np.bool_]
 
+    @classmethod
+    def of(
+        cls, boxes: Sequence[Box], contours: Sequence[Contour], levels: NDArray[np.uint8], cut: bool
+    ) -> "Proposals":
+        """Regions by their outlines, int32 (k, 2) or (k, 1, 2) each, all or none of them cut."""
+        lengths = np.array([len(contour) for contour in contours], np.int64)
+        joined = np.concatenate(contours) if contours else np.zeros(0, np.int32)
+        return cls(
+            np.array(boxes, np.int32).reshape(-1, 4),
+            np.asarray(joined, np.int32).reshape(-1, 2),
+            lengths.cumsum() - lengths,
+            lengths,
+            levels,
+            np.full(len(contours), cut),
+        )
+
     def __len__(self) -> int:
-        return len(self.contours)
+        return len(self.boxes)
+
+    @property
+    def contours(self) -> tuple[Contour, ...]:
+        """n arrays int32 (k, 2): the outlines."""
+        return tuple(self.contour(number) for number in range(len(self)))
+
+    def contour(self, number: int) -> Contour:
+        """One of the outlines, int32 (k, 2)."""
+        start = int(self.starts[number])
+        return self.points[start : start + int(self.lengths[number])]
 
     def box(self, number: int) -> Box:
         """One of the boxes."""
@@ -78,14 +107,22 @@ class Proposals:
 
     def taken(self, numbers: NDArray[np.intp]) -> "Proposals":
         """Some of the regions, in that order."""
-        contours = tuple(self.contours[number] for number in numbers)
-        return Proposals(self.boxes[numbers], contours, self.levels[numbers], self.cut[numbers])
+        return Proposals(
+            self.boxes[numbers],
+            self.points,
+            self.starts[numbers],
+            self.lengths[numbers],
+            self.levels[numbers],
+            self.cut[numbers],
+        )
 
     def joined(self, others: "Proposals") -> "Proposals":
         """These regions, then others."""
         return Proposals(
             np.concatenate([self.boxes, others.boxes]),
-            self.contours + others.contours,
+            np.concatenate([self.points, others.points]),
+            np.concatenate([self.starts, others.starts + len(self.points)]),
+            np.concatenate([self.lengths, others.lengths]),
             np.concatenate([self.levels, others.levels]),
             np.concatenate([self.cut, others.cut]),
         )
@@ -127,11 +164,28 @@ def plain_distinct(boxes: NDArray[np.int32], most: int) -> NDArray[np.intp]:
     return np.array(keep_distinct(same, range(len(boxes)), most), np.intp)
 
 
-def whole_regions(skin: Image, levels: int = LEVELS, distinct: Distinct = plain_distinct) -> Proposals:
+@dataclass(frozen=True, slots=True)
+class RegionLoops:
+    """What passes over the levels of the skin map, and over boxes.
+
+    whole: (skin, levels) -> `whole_regions`. distinct: see `Distinct`.
+    """
+
+    whole: Callable[[Image, int], Proposals]
+    distinct: Distinct
+
+
+def whole_regions(skin: Image, levels: int = LEVELS, loops: RegionLoops | None = None) -> Proposals:
     """Regions of the skin map, uint8 (h, w), at any level that may be hands, forearms and all.
 
-    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range.
+    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range. loops: None for
+    `PLAIN`; any gives the same regions.
     """
+    return (loops or PLAIN).whole(skin, levels)
+
+
+def plain_whole(skin: Image, levels: int, distinct: Distinct = plain_distinct) -> Proposals:
+    """`RegionLoops.whole` by OpenCV."""
     found: list[Contour] = []
     boxes: list[Box] = []
     thresholds: list[int] = []
@@ -146,34 +200,21 @@ def whole_regions(skin: Image, levels: int = LEVELS, distinct: Distinct = plain_
         # The reddest regions come first, so specks at the low levels are what a flood loses.
         if len(found) >= MOST_LOOKED_AT or outlines >= MOST_OUTLINES:
             break
-    return _distinct(found, boxes, thresholds, [False] * len(found), distinct)
-
-
-def _distinct(
-    contours: list[Contour], boxes: list[Box], levels: list[int], cut: list[bool], distinct: Distinct
-) -> Proposals:
-    """The first of each group of regions whose boxes nearly agree, as many as are wanted."""
     looked_at = np.array(boxes[:MOST_LOOKED_AT], np.int32).reshape(-1, 4)
     kept = distinct(looked_at, MOST)
-    return Proposals(
-        boxes=looked_at[kept],
-        contours=tuple(np.asarray(contours[index], np.int32).reshape(-1, 2) for index in kept),
-        levels=np.array(levels, np.uint8)[kept],
-        cut=np.array(cut, bool)[kept],
-    )
+    of_levels = np.array(thresholds, np.uint8)[kept]
+    return Proposals.of([boxes[index] for index in kept], [found[index] for index in kept], of_levels, False)
+
+
+PLAIN: Final = RegionLoops(plain_whole, plain_distinct)
 
 
 def without_forearms(regions: Proposals, numbers: Iterable[int]) -> Proposals:
     """Those of some regions whose forearm can be cut off, without it."""
-    hands = {number: cut_forearm(regions.contours[number], regions.box(number)) for number in numbers}
+    hands = {number: cut_forearm(regions.contour(number), regions.box(number)) for number in numbers}
     cut = {number: hand for number, hand in hands.items() if hand is not None}
     boxes = [cv2.boundingRect(hand) for hand in cut.values()]
-    return Proposals(
-        np.array(boxes, np.int32).reshape(-1, 4),
-        tuple(cut.values()),
-        regions.levels[list(cut)],
-        np.ones(len(cut), bool),
-    )
+    return Proposals.of(boxes, list(cut.values()), regions.levels[list(cut)], True)  # type: ignore[arg-type]
 
 
 def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
@@ -181,8 +222,7 @@ def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
     whole = whole_regions(colour.skin, levels)
     hands = without_forearms(whole, range(len(whole)))
     every = whole.joined(hands)
-    boxes = [every.box(index) for index in range(len(every))]
-    return _distinct(list(every.contours), boxes, every.levels.tolist(), every.cut.tolist(), plain_distinct)
+    return every.taken(plain_distinct(every.boxes[:MOST_LOOKED_AT], MOST))
 
 
 def fill_contour(contour: Contour, box: Box, border: int = 0) -> Image:

@@ -37,6 +37,14 @@ def _textured(seed, height, width, light):
     return np.clip(picture + rng.normal(0, 4, picture.shape), 0, 255).astype(np.uint8)
 
 
+def _assert_same_regions(one, other):
+    assert one.boxes.tobytes() == other.boxes.tobytes()
+    assert one.levels.tobytes() == other.levels.tobytes()
+    assert one.cut.tobytes() == other.cut.tobytes()
+    for mine, theirs in zip(one.contours, other.contours, strict=True):
+        assert mine.tobytes() == theirs.tobytes()
+
+
 def _assert_same_candidates(one, other):
     assert len(one.regions) == len(other.regions)
     for mine, theirs in zip(one.regions, other.regions, strict=True):
@@ -62,11 +70,28 @@ def test_any_picture_gives_the_same_bytes(fast, seed, height, width, light):
     assert skin_map(picture, fast.skin).tobytes() == skin.tobytes()
     sums = cells.channel_sums(picture, skin)
     assert cells.channel_sums(picture, skin, fast.cells).tobytes() == sums.tobytes()
-    regions, same = whole_regions(skin), whole_regions(skin, distinct=fast.distinct)
-    assert regions.boxes.tobytes() == same.boxes.tobytes()
+    regions, same = whole_regions(skin), whole_regions(skin, loops=fast.regions)
+    _assert_same_regions(regions, same)
     size = width, height
     rows = cells.describe(sums, regions, size)
     assert cells.describe(sums, regions, size, fast.cells).tobytes() == rows.tobytes()
+
+
+@given(
+    seed=st.integers(0, 2**31),
+    height=st.integers(1, 90),
+    width=st.integers(1, 90),
+    grain=st.integers(1, 12),
+    levels=st.sampled_from([2, 7, 24, 128, 200, 256]),
+)
+@settings(max_examples=60, deadline=None)
+def test_any_map_has_the_same_regions_within_regions(fast, seed, height, width, grain, levels):
+    """Rings, specks in holes and regions that touch by a corner, from noise to blobs."""
+    coarse = np.random.default_rng(seed).integers(0, 256, (height // grain + 1, width // grain + 1))
+    skin = cv2.resize(coarse.astype(np.uint8), (width, height)).reshape(height, width)
+    regions = whole_regions(skin, levels)
+    _assert_same_regions(regions, whole_regions(skin, levels, fast.regions))
+    assert fast.cells.areas(regions).tobytes() == cells.PLAIN.areas(regions).tobytes()
 
 
 @given(
@@ -79,7 +104,7 @@ def test_any_picture_gives_the_same_bytes(fast, seed, height, width, light):
 @settings(max_examples=60, deadline=None)
 def test_any_boxes_are_parted_and_described_alike(fast, boxes, most):
     table = np.array(boxes, np.int32).reshape(-1, 4)
-    np.testing.assert_array_equal(fast.distinct(table, most), plain_distinct(table, most))
+    np.testing.assert_array_equal(fast.regions.distinct(table, most), plain_distinct(table, most))
     picture = _textured(1, 120, 160, 1.0)
     sums = cells.channel_sums(picture, skin_map(picture))
     assert fast.cells.cells(sums, table).tobytes() == cells.PLAIN.cells(sums, table).tobytes()

@@ -160,7 +160,7 @@ def glance(pictures: Iterable[BoxedPicture], loops: Loops) -> Iterable[Glanced]:
     for picture in pictures:
         colour = stage.process(picture.image)
         scene = Scene.of(colour, loops)
-        regions = whole_regions(scene.skin, distinct=loops.distinct)
+        regions = whole_regions(scene.skin, loops=loops.regions)
         if len(regions):
             rows = cells.describe(scene.sums, regions, scene.size, loops.cells)
             yield Glanced(picture, colour, scene, regions, rows)

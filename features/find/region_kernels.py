@@ -1,0 +1,298 @@
+"""Loops over the levels of the skin map, to be compiled: what `proposals.plain_whole` finds, outline by outline.
+
+A level is looked at run by run, eight pixels at a time. Its runs are joined with those of the row above by eight
+neighbours, and what lies between them by four, so that what stands in another region's hole is known. An outline is
+followed only where it is asked for. Both as in Suzuki and Abe, "Topological structural analysis of digitized binary
+images by border following", Computer Vision, Graphics, and Image Processing 30(1), 1985.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+
+# Numba has no types that a type checker knows.
+Array = Any
+
+HELPERS: Final = ("root_of", "joined", "find_edges", "join_gaps", "join_runs", "follow", "twice_beside")
+"""What the loops call, each after those that it calls."""
+ONES: Final = np.uint64(0x0101010101010101)
+HIGH_BITS: Final = np.uint64(0x8080808080808080)
+PLACES: Final = np.uint64(0x0001020304050607)
+"""Times a byte's lowest bit this has the byte's place in the topmost byte."""
+ZERO, ONE, SEVEN, EIGHT, TOP = (np.uint64(number) for number in (0, 1, 7, 8, 56))
+SMALL: Final = 512
+"""Points of an outline that is followed only to be counted: of 8 × 8 pixels, each passed eight times at most."""
+
+
+def root_of(parents: Array, label: int) -> int:
+    """The label that stands for all those joined with one."""
+    while parents[label] != label:
+        parents[label] = parents[parents[label]]
+        label = parents[label]
+    return label
+
+
+def joined(parents: Array, one: int, other: int) -> int:
+    """The label that stands for all those joined with either, now one: the older."""
+    first, second = root_of(parents, one), root_of(parents, other)
+    parents[max(first, second)] = min(first, second)
+    return min(first, second)
+
+
+def find_edges(row: Array, level: int, edges: Array) -> int:
+    """Write where the runs of a row that reach a level begin and end, in turn; the number of runs.
+
+    row: uint64, eight pixels each, the first in the lowest byte.
+    """
+    # A byte's highest bit is set where its pixel, below 128, reaches the level.
+    offset = np.uint64(128 - level) * ONES
+    count = 0
+    last = ZERO
+    for place in range(len(row)):
+        mask = (row[place] + offset) & HIGH_BITS
+        change = mask ^ ((mask << EIGHT) | last)
+        last = mask >> TOP
+        while change != ZERO:
+            lowest = change & (~change + ONE)
+            edges[count] = 8 * place + np.int64(((lowest >> SEVEN) * PLACES) >> TOP)
+            count += 1
+            change ^= lowest
+    return count // 2
+
+
+def join_gaps(
+    edges: Array,
+    runs: int,
+    gaps: Array,
+    above: Array,
+    above_runs: int,
+    gaps_above: Array,
+    parents: Array,
+    count: int,
+) -> int:
+    """Label what lies between the runs of a row, 0 where it touches the rim; how many labels there are then.
+
+    edges, gaps: of this row. above, gaps_above: of the row above. parents, count: of the labels so far.
+    """
+    other = 0
+    for gap in range(runs + 1):
+        left = edges[2 * gap - 1] if gap else 0
+        label = 0 if gap == 0 or gap == runs else -1
+        while other < above_runs and above[2 * other] <= left:
+            other += 1
+        beside = other
+        while beside <= above_runs and (beside == 0 or gap == runs or above[2 * beside - 1] < edges[2 * gap]):
+            label = gaps_above[beside] if label < 0 else joined(parents, label, gaps_above[beside])
+            beside += 1
+        if label < 0:
+            label = count
+            parents[label] = label
+            count += 1
+        gaps[gap] = label
+    return count
+
+
+def join_runs(
+    y: int,
+    edges: Array,
+    runs: int,
+    labels: Array,
+    gaps: Array,
+    above: Array,
+    above_runs: int,
+    labels_above: Array,
+    parents: Array,
+    regions: Array,
+    count: int,
+) -> int:
+    """Label the runs of a row y; how many labels there are then.
+
+    regions: int32 (n, 6), of each label x, y and their ends, the first pixel's x, the gap before it.
+    """
+    other = 0
+    for run in range(runs):
+        left, right = edges[2 * run], edges[2 * run + 1]
+        while other < above_runs and above[2 * other + 1] < left:
+            other += 1
+        label = -1
+        beside = other
+        while beside < above_runs and above[2 * beside] <= right:
+            one = root_of(parents, labels_above[beside])
+            if label >= 0 and one != label:
+                older, younger = min(label, one), max(label, one)
+                regions[older, 0] = min(regions[older, 0], regions[younger, 0])
+                regions[older, 2] = max(regions[older, 2], regions[younger, 2])
+                parents[younger] = older
+                one = older
+            label = one
+            beside += 1
+        if label < 0:
+            label = count
+            count += 1
+            parents[label] = label
+            regions[label, 0], regions[label, 1], regions[label, 2] = left, y, right
+            regions[label, 4], regions[label, 5] = left, gaps[run]
+        regions[label, 0] = min(regions[label, 0], left)
+        regions[label, 2] = max(regions[label, 2], right)
+        regions[label, 3] = y + 1
+        labels[run] = label
+    return count
+
+
+def follow(pixels: Array, start_x: int, start_y: int, level: int, points: Array, place: int) -> int:
+    """Write the outline of the region whose first pixel is given from `place` on; the place after it, -1 where
+    `points`, int32 (m, 2), is too short. It begins there, goes down the left side and is in pixels inside the rim."""
+    # From the right counter-clockwise, twice, so that a search need not begin again.
+    across = (1, 1, 0, -1, -1, -1, 0, 1, 1, 1, 0, -1, -1, -1, 0, 1)
+    down = (0, -1, -1, -1, 0, 1, 1, 1, 0, -1, -1, -1, 0, 1, 1, 1)
+    # Nothing stands above the first pixel or left of it: clockwise from there, what comes first ends the outline.
+    towards = 8
+    while towards > 4 and pixels[start_y + down[towards], start_x + across[towards]] < level:
+        towards -= 1
+    last_x, last_y = start_x + across[towards], start_y + down[towards]
+    is_alone = towards == 4
+    x, y = start_x, start_y
+    towards &= 7
+    while True:
+        if place >= len(points):
+            return -1
+        points[place, 0], points[place, 1] = x - 1, y - 1
+        place += 1
+        if is_alone:
+            return place
+        towards += 1
+        while pixels[y + down[towards], x + across[towards]] < level:
+            towards += 1
+        next_x, next_y = x + across[towards], y + down[towards]
+        if next_x == start_x and next_y == start_y and x == last_x and y == last_y:
+            return place
+        x, y, towards = next_x, next_y, (towards + 4) & 7
+
+
+def nodes(
+    pixels: Array, words: Array, levels: int, limits: Array, most: int, most_outlines: int, shortest: int
+) -> Array:
+    """int32 (n, 7): the regions of `proposals.plain_whole` before those that nearly agree are dropped: box, first pixel
+    inside the rim, level.
+
+    pixels: uint8 (h + 2, w'), how many thresholds each pixel reaches, at most 127, in a rim of zeros. words: the same,
+    uint64 (h + 2, w' / 8). limits: float64 (3,), shortest and longest side and largest aspect of a box.
+    """
+    height, width = pixels.shape
+    edges = np.empty((2, width + 2), np.int32)
+    labels, gaps = np.empty((2, width // 2 + 2), np.int32), np.empty((2, width // 2 + 2), np.int32)
+    room = height * (width // 2 + 1) + 1
+    parents, gap_parents, regions = (
+        np.empty(room, np.int32),
+        np.empty(room, np.int32),
+        np.empty((room, 6), np.int32),
+    )
+    scratch = np.empty((SMALL, 2), np.int32)
+    found = np.empty((most, 7), np.int32)
+    count, outlines, level = 0, 0, levels
+    while level > 1 and count < most and outlines < most_outlines:
+        level -= 1
+        gap_parents[0], gaps[0, 0] = 0, 0
+        runs, label_count, gap_count = 0, 0, 1
+        for y in range(1, height):
+            now, old, runs_above = y & 1, 1 - (y & 1), runs
+            runs = find_edges(words[y], level, edges[now])
+            gap_count = join_gaps(
+                edges[now], runs, gaps[now], edges[old], runs_above, gaps[old], gap_parents, gap_count
+            )
+            label_count = join_runs(
+                y,
+                edges[now],
+                runs,
+                labels[now],
+                gaps[now],
+                edges[old],
+                runs_above,
+                labels[old],
+                parents,
+                regions,
+                label_count,
+            )
+        # From below, as OpenCV tells them.
+        for label in range(label_count - 1, -1, -1):
+            if parents[label] != label or root_of(gap_parents, regions[label, 5]) != 0:
+                continue
+            outlines += 1
+            x, y = regions[label, 0], regions[label, 1]
+            wide, tall = regions[label, 2] - x, regions[label, 3] - y
+            short, long = min(wide, tall), max(wide, tall)
+            if count == most or short < limits[0] or long > limits[1] or long > limits[2] * short:
+                continue
+            # There and back along the longer side is enough, mostly.
+            if 2 * long - 2 < shortest and follow(pixels, regions[label, 4], y, level, scratch, 0) < shortest:
+                continue
+            found[count, 0], found[count, 1], found[count, 2], found[count, 3] = x - 1, y - 1, wide, tall
+            found[count, 4], found[count, 5], found[count, 6] = regions[label, 4], y, level
+            count += 1
+    return found[:count].copy()
+
+
+def outlines(pixels: Array, chosen: Array) -> tuple[Array, Array]:
+    """int32 (m, 2), outlines of regions one after the other, and int64 (n + 1,), where each begins.
+
+    pixels: see `nodes`. chosen: rows of what it gives.
+    """
+    points = np.empty((4096, 2), np.int32)
+    starts = np.zeros(len(chosen) + 1, np.int64)
+    for index in range(len(chosen)):
+        x, y, level = chosen[index, 4], chosen[index, 5], chosen[index, 6]
+        place = follow(pixels, x, y, level, points, starts[index])
+        while place < 0:
+            more = np.empty((2 * len(points), 2), np.int32)
+            more[: starts[index]] = points[: starts[index]]
+            points = more
+            place = follow(pixels, x, y, level, points, starts[index])
+        starts[index + 1] = place
+    return points[: starts[-1]], starts
+
+
+def twice_beside(sides: Array, count: int, sign: int, chain: Array) -> Array:
+    """Twice the area between an axis and the convex line on the far side of `sides`, an x for each of `count` rows.
+
+    sign: 1 for the right side, -1 for the left one. chain: room for the rows that the line bends at.
+    """
+    kept = 0
+    for row in range(count):
+        while kept > 1:
+            first, middle = chain[kept - 2], chain[kept - 1]
+            bend = (sides[middle] - sides[first]) * (row - first) - (sides[row] - sides[first]) * (
+                middle - first
+            )
+            if sign * bend > 0:
+                break
+            kept -= 1
+        chain[kept] = row
+        kept += 1
+    total: int = 0
+    for index in range(1, kept):
+        first, row = chain[index - 1], chain[index]
+        total += (sides[first] + sides[row]) * (row - first)
+    return total
+
+
+def areas(points: Array, starts: Array, lengths: Array, boxes: Array) -> Array:
+    """See `cells.CellLoops`, with the fields of the regions one by one."""
+    tallest: Array = 1
+    for index in range(len(boxes)):
+        tallest = max(tallest, boxes[index, 3])
+    low, high, chain = np.empty(tallest, np.int64), np.empty(tallest, np.int64), np.empty(tallest, np.int64)
+    found = np.empty((len(boxes), 2), np.float64)
+    for index in range(len(boxes)):
+        top, rows = boxes[index, 1], boxes[index, 3]
+        low[:rows], high[:rows] = boxes[index, 0] + boxes[index, 2], boxes[index, 0]
+        first, end = starts[index], starts[index] + lengths[index]
+        x, y = np.int64(points[end - 1, 0]), np.int64(points[end - 1, 1])
+        twice: Array = 0
+        for place in range(first, end):
+            next_x, next_y = np.int64(points[place, 0]), np.int64(points[place, 1])
+            twice += x * next_y - next_x * y
+            x, y = next_x, next_y
+            low[y - top], high[y - top] = min(low[y - top], x), max(high[y - top], x)
+        found[index, 0] = abs(twice) * 0.5
+        found[index, 1] = (twice_beside(high, rows, 1, chain) - twice_beside(low, rows, -1, chain)) * 0.5
+    return found

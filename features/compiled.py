@@ -33,8 +33,13 @@ SIGNATURES: Final = {
     },
     "region_kernels": {
         "nodes": "i4[:,::1](u1[:,::1], u8[:,::1], i8, f8[::1], i8, i8, i8)",
+        "largest_parts": "Tuple((i4[:,::1], i4[:,::1]))(u1[:,::1], i8[:,::1], i4[:,::1], b1[::1], i8)",
         "outlines": "Tuple((i4[:,::1], i8[::1]))(u1[:,::1], i4[:,::1])",
+    },
+    "outline_kernels": {
         "areas": "f8[:,::1](i4[:,::1], i8[::1], i8[::1], i4[:,::1])",
+        "masks": "Tuple((u1[:,::1], i8[:,::1]))(i4[:,::1], i8[::1], i8[::1], i4[:,::1])",
+        "arms": "f8[:,::1](u1[:,::1], i8[:,::1], i4[:,::1], f4[:,::1], i4[:,::1])",
     },
 }
 """Types of what each loop of the modules in `find/` gives and takes, in numba's notation, so that none is compiled in

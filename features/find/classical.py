@@ -19,11 +19,11 @@ from lightgesture.features.find import cells
 from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
 from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, scored_pairs
 from lightgesture.features.find.cells import PLAIN, CellLoops
+from lightgesture.features.find.forearms import fill_contour
 from lightgesture.features.find.proposals import (
     LEVELS,
     Proposals,
     RegionLoops,
-    fill_contour,
     whole_regions,
     without_forearms,
 )
@@ -101,7 +101,7 @@ def standing_out(
     """The regions that get the second look, with and without forearms, and their rows of `cells.describe`."""
     best = np.argsort(-scores, kind="stable")[:STANDING_OUT]
     chosen = whole.taken(best)
-    hands = without_forearms(chosen, range(min(len(chosen), ARMS)))
+    hands = without_forearms(whole.taken(best[:ARMS]), loops.regions)
     more = cells.describe(scene.sums, hands, scene.size, loops.cells)
     return chosen.joined(hands), np.concatenate([rows[best], more])
 

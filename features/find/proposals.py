@@ -4,14 +4,9 @@ One threshold finds a hand only where its skin is redder than what touches it by
 outer contours at all levels are the nodes of the component tree that MSER walks (Matas, Chum, Urban and
 Pajdla, "Robust wide-baseline stereo from maximally stable extremal regions", 2002); somewhere along
 the tree the hand stands alone.
-
-A forearm is cut off at the wrist. The palm is the largest circle inside the outline. What leaves it downwards beyond
-the circle is the forearm, straight or slanted, and gives the arm's direction; the wrist crosses it about one radius
-from the palm's centre. Fingers stay out of this because a raised hand has them above its palm.
 """
 
-import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -20,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
+from lightgesture.features.find.forearms import cut_forearm
 from lightgesture.features.geometry import keep_distinct
 from lightgesture.features.types import Box, Contour, Image
-
-Point = tuple[float, float]
 
 LEVELS: Final = 24
 """Thresholds over the skin map; 8 lose hands in the dark, and 32 find no more."""
@@ -43,16 +37,6 @@ MOST_LOOKED_AT: Final = 192
 """Regions compared with one another for near-equal ones, of which those of the highest levels count."""
 MOST_OUTLINES: Final = 1200
 """Outlines, specks included, after which no lower level is looked at: a picture of noise has thousands at each."""
-WRIST_DISTANCE: Final = 1.2
-"""Of the wrist from the palm's centre along the arm, palm radii."""
-ARM_TOP: Final = 0.6
-"""Palm radii below the palm's centre; what lies higher does not count for the arm's direction."""
-ARM_RING: Final = 1.3
-"""Radius of the circle that counts as palm, palm radii; the arm is what lies outside."""
-LEAST_REMAINDER: Final = 0.06
-"""Share of the region's area that the arm must have, else nothing is cut."""
-LEAST_HEIGHT: Final = 5
-"""Of what remains, pixels of the working picture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,13 +150,14 @@ def plain_distinct(boxes: NDArray[np.int32], most: int) -> NDArray[np.intp]:
 
 @dataclass(frozen=True, slots=True)
 class RegionLoops:
-    """What passes over the levels of the skin map, and over boxes.
+    """What passes over the levels of the skin map, over boxes and over the pixels of regions.
 
-    whole: (skin, levels) -> `whole_regions`. distinct: see `Distinct`.
+    whole: (skin, levels) -> `whole_regions`. distinct: see `Distinct`. forearms: regions -> `without_forearms`.
     """
 
     whole: Callable[[Image, int], Proposals]
     distinct: Distinct
+    forearms: Callable[[Proposals], Proposals]
 
 
 def whole_regions(skin: Image, levels: int = LEVELS, loops: RegionLoops | None = None) -> Proposals:
@@ -206,100 +191,25 @@ def plain_whole(skin: Image, levels: int, distinct: Distinct = plain_distinct) -
     return Proposals.of([boxes[index] for index in kept], [found[index] for index in kept], of_levels, False)
 
 
-PLAIN: Final = RegionLoops(plain_whole, plain_distinct)
+def without_forearms(regions: Proposals, loops: RegionLoops | None = None) -> Proposals:
+    """Those of the regions whose forearm can be cut off, without it. loops: None for `PLAIN`."""
+    return (loops or PLAIN).forearms(regions)
 
 
-def without_forearms(regions: Proposals, numbers: Iterable[int]) -> Proposals:
-    """Those of some regions whose forearm can be cut off, without it."""
-    hands = {number: cut_forearm(regions.contour(number), regions.box(number)) for number in numbers}
-    cut = {number: hand for number, hand in hands.items() if hand is not None}
-    boxes = [cv2.boundingRect(hand) for hand in cut.values()]
-    return Proposals.of(boxes, list(cut.values()), regions.levels[list(cut)], True)  # type: ignore[arg-type]
+def plain_forearms(regions: Proposals) -> Proposals:
+    """`RegionLoops.forearms` by OpenCV."""
+    hands = [cut_forearm(regions.contour(number), regions.box(number)) for number in range(len(regions))]
+    cut = [number for number, hand in enumerate(hands) if hand is not None]
+    left = [hand for hand in hands if hand is not None]
+    return Proposals.of([cv2.boundingRect(hand) for hand in left], left, regions.levels[cut], True)  # type: ignore[misc]
+
+
+PLAIN: Final = RegionLoops(plain_whole, plain_distinct, plain_forearms)
 
 
 def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
     """Regions of the skin map that may be hands, and all of them without their forearms where one was found."""
     whole = whole_regions(colour.skin, levels)
-    hands = without_forearms(whole, range(len(whole)))
+    hands = without_forearms(whole)
     every = whole.joined(hands)
     return every.taken(plain_distinct(every.boxes[:MOST_LOOKED_AT], MOST))
-
-
-def fill_contour(contour: Contour, box: Box, border: int = 0) -> Image:
-    """uint8 (height + 2 border, width + 2 border): 255 inside the outline, `box` placed in the middle."""
-    x, y, width, height = box
-    mask = np.zeros((height + 2 * border, width + 2 * border), np.uint8)
-    cv2.drawContours(mask, [contour.reshape(-1, 1, 2)], -1, 255, cv2.FILLED, offset=(border - x, border - y))
-    return mask
-
-
-def palm_circle(mask: Image) -> tuple[tuple[int, int], float]:
-    """Centre (x, y) and radius in pixels of the largest circle inside a mask with an empty border.
-
-    Turned, enlarged, mirrored: with the mask, to a pixel; of several largest circles the first from the top counts.
-    """
-    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    _, radius, _, centre = cv2.minMaxLoc(distance)
-    return (centre[0], centre[1]), radius
-
-
-def arm_direction(mask: Image, centre: tuple[int, int], radius: float) -> Point | None:
-    """Unit vector (x, y) from the palm's centre along the forearm; None where there is none.
-
-    Enlarged and mirrored: with the mask. It looks downwards alone, so it does not follow a turn by more than about 60
-    degrees.
-    """
-    top = int(centre[1] + ARM_TOP * radius)
-    if top >= len(mask):
-        return None
-    arm = mask[top:].copy()
-    cv2.circle(arm, (centre[0], centre[1] - top), round(ARM_RING * radius), 0, cv2.FILLED)
-    moments = cv2.moments(arm, binaryImage=True)
-    area = moments["m00"]
-    if area < max(LEAST_REMAINDER * cv2.countNonZero(mask), 1.0):
-        return None
-    across, down = moments["m10"] / area - centre[0], moments["m01"] / area - centre[1] + top
-    length = math.hypot(across, down)
-    # Rests on both sides of a palm may balance each other: then no arm leaves it.
-    return (across / length, down / length) if length > 0.0 else None
-
-
-def cut_forearm(contour: Contour, box: Box) -> Contour | None:
-    """The outline without what lies beyond the wrist, int32 (k, 2); None where the region ends there already."""
-    mask = fill_contour(contour, box, border=1)
-    centre, radius = palm_circle(mask)
-    direction = arm_direction(mask, centre, radius)
-    if direction is None:
-        return None
-    whole = cv2.countNonZero(mask)
-    wrist = WRIST_DISTANCE * radius
-    _erase_beyond(mask, (centre[0] + wrist * direction[0], centre[1] + wrist * direction[1]), direction)
-    if whole - cv2.countNonZero(mask) < LEAST_REMAINDER * whole:
-        return None
-    # Of the outline in the picture's pixels: the mask begins a pixel before the box.
-    parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE, offset=(box[0] - 1, box[1] - 1))[
-        0
-    ]
-    largest = max(parts, key=cv2.contourArea, default=None)
-    if largest is None or cv2.boundingRect(largest)[3] < LEAST_HEIGHT:
-        return None
-    return np.asarray(largest, np.int32).reshape(-1, 2)
-
-
-def _erase_beyond(mask: Image, point: Point, direction: Point) -> None:
-    """Set to 0 what lies past the line through `point` across `direction`."""
-    (x, y), (along_x, along_y) = point, direction
-    far = float(sum(mask.shape))
-    corners = np.array(
-        [
-            (round(x + far * step_x), round(y + far * step_y))
-            for step_x, step_y in (
-                (along_y, -along_x),
-                (-along_y, along_x),
-                (-along_y + along_x, along_x + along_y),
-                (along_y + along_x, -along_x + along_y),
-            )
-        ],
-        np.int32,
-    )
-    cv2.fillConvexPoly(mask, corners, 0)

@@ -1,14 +1,16 @@
 """Compiled loops put in the place of the plain ones: from what a stage has to flat arrays and back."""
 
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any, Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.find.cells import CellLoops
 from lightgesture.features.find.classical import Loops
+from lightgesture.features.find.forearms import LEAST_HEIGHT, direction_from, erase_forearm
 from lightgesture.features.find.proposals import (
     LARGEST_ASPECT,
     LARGEST_SIDE,
@@ -20,12 +22,17 @@ from lightgesture.features.find.proposals import (
     Distinct,
     Proposals,
     RegionLoops,
+    plain_forearms,
     plain_whole,
 )
 from lightgesture.features.find.trees import FlatTrees
 from lightgesture.features.skin_map import SkinLoops
 from lightgesture.features.types import Image
 
+DISCS: Final = 96
+"""Radii of palms, with what is round them, that the compiled loops know, pixels."""
+LARGEST_ARM: Final = 138
+"""Longer side of a region whose palm has one of these radii, pixels; no working picture holds a larger square."""
 MOST_LEVELS: Final = 128
 """Levels that the compiled loops know, as one bit of a byte tells whether its pixel reaches one."""
 
@@ -51,7 +58,8 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     )
     in_cells = CellLoops(_of_writeable(found["sums"]), found["cells"], areas)
     whole = partial(_whole, found["nodes"], found["distinct"], found["outlines"])
-    return Loops(skin, in_cells, RegionLoops(whole, found["distinct"]), walk_trees)
+    forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
+    return Loops(skin, in_cells, RegionLoops(whole, found["distinct"], forearms), walk_trees)
 
 
 def _whole(
@@ -61,25 +69,68 @@ def _whole(
     if levels > MOST_LEVELS:
         return plain_whole(skin, levels)
     height, width = skin.shape
-    thresholds = np.arange(levels) * 256 // levels
-    reached = thresholds.searchsorted(np.arange(256), side="right") - 1
+    thresholds, reached = _thresholds(levels)
     pixels = np.zeros((height + 2, (width + 9) // 8 * 8), np.uint8)
-    pixels[1:-1, 1 : width + 1] = reached.astype(np.uint8)[skin]
+    pixels[1:-1, 1 : width + 1] = cv2.LUT(skin, reached)
     shorter = min(skin.shape)
     limits = np.array([SMALLEST_SIDE * shorter, LARGEST_SIDE * shorter, LARGEST_ASPECT])
     words = pixels.view(np.uint64)
     found = nodes(pixels, words, levels, limits, MOST_LOOKED_AT, MOST_OUTLINES, SHORTEST_CONTOUR)
     boxes = np.ascontiguousarray(found[:, :4])
     kept = distinct(boxes, MOST)
-    points, starts = outlines(pixels, found[kept])
+    chosen = found.take(kept, axis=0)
+    points, starts = outlines(pixels, chosen)
+    of_levels = thresholds.take(chosen[:, 6])
     return Proposals(
-        boxes[kept],
-        points,
-        starts[:-1],
-        starts[1:] - starts[:-1],
-        thresholds[found[kept, 6]].astype(np.uint8),
-        np.zeros(len(kept), bool),
+        boxes.take(kept, axis=0), points, starts[:-1], np.diff(starts), of_levels, np.zeros(len(kept), bool)
     )
+
+
+@lru_cache(maxsize=4)
+def _thresholds(levels: int) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """The threshold of each level, and of each value how many of them, from the second on, it reaches."""
+    thresholds = np.arange(levels) * 256 // levels
+    reached = thresholds.searchsorted(np.arange(256), side="right") - 1
+    return thresholds.astype(np.uint8), reached.astype(np.uint8)
+
+
+def _without_forearms(
+    masks: Callable[..., Any], arms: Callable[..., Any], parts: Callable[..., Any], regions: Proposals
+) -> Proposals:
+    """`RegionLoops.forearms` by compiled loops."""
+    if not len(regions) or regions.boxes[:, 2:].max() > LARGEST_ARM:
+        return plain_forearms(regions)
+    whole, rows = masks(regions.points, regions.starts, regions.lengths, regions.boxes)
+    found = arms(whole, rows, regions.boxes, cv2.distanceTransform(whole, cv2.DIST_L2, 3), _discs())
+    widths, places = regions.boxes[:, 2].tolist(), rows.tolist()
+    is_cut = np.zeros(len(regions), bool)
+    for index, (x, y, radius, top, area, columns, lines) in enumerate(found.tolist()):
+        (begin, pixels), (end, _), centre = places[index], places[index + 1], (int(x), int(y))
+        direction = direction_from((area, columns, lines), top, pixels, centre) if top >= 0.0 else None
+        if direction is not None:
+            mask = whole[begin:end, : widths[index] + 2]
+            is_cut[index] = erase_forearm(mask, pixels, centre, radius, direction)
+    points, hands = parts(whole, rows, regions.boxes, is_cut, LEAST_HEIGHT)
+    return Proposals(
+        np.ascontiguousarray(hands[:, 3:]),
+        points,
+        hands[:, 0].astype(np.int64),
+        hands[:, 1].astype(np.int64),
+        regions.levels[hands[:, 2]],
+        np.ones(len(hands), bool),
+    )
+
+
+@lru_cache(maxsize=1)
+def _discs() -> NDArray[np.int32]:
+    """int32 (r, r + 1): half widths of OpenCV's disc of each radius in the rows from its middle on, -1 beyond it."""
+    size = DISCS + 1
+    found = np.empty((DISCS, size), np.int32)
+    for radius in range(DISCS):
+        canvas = np.zeros((size, 2 * size), np.uint8)
+        cv2.circle(canvas, (size, 0), radius, 1, cv2.FILLED)
+        found[radius] = (canvas.sum(axis=1, dtype=np.int32) + 1) // 2 - 1
+    return found
 
 
 def _of_writeable(loop: Callable[..., Any]) -> Callable[..., Any]:

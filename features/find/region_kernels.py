@@ -13,13 +13,15 @@ import numpy as np
 # Numba has no types that a type checker knows.
 Array = Any
 
-HELPERS: Final = ("root_of", "joined", "find_edges", "join_gaps", "join_runs", "follow", "twice_beside")
+HELPERS: Final = ("root_of", "joined", "find_edges", "join_gaps", "join_runs", "follow", "mark_passed")
 """What the loops call, each after those that it calls."""
 ONES: Final = np.uint64(0x0101010101010101)
 HIGH_BITS: Final = np.uint64(0x8080808080808080)
 PLACES: Final = np.uint64(0x0001020304050607)
 """Times a byte's lowest bit this has the byte's place in the topmost byte."""
 ZERO, ONE, SEVEN, EIGHT, TOP = (np.uint64(number) for number in (0, 1, 7, 8, 56))
+UNSEEN: Final = 255
+"""Pixel of a mask that no outline has passed yet."""
 SMALL: Final = 512
 """Points of an outline that is followed only to be counted: of 8 × 8 pixels, each passed eight times at most."""
 
@@ -169,6 +171,18 @@ def follow(pixels: Array, start_x: int, start_y: int, level: int, points: Array,
         x, y, towards = next_x, next_y, (towards + 4) & 7
 
 
+def mark_passed(mask: Array, points: Array, begin: int, end: int) -> Array:
+    """Mark in a mask what an outline passes; twice the area that it encloses."""
+    twice: Array = 0
+    x, y = points[end - 1, 0], points[end - 1, 1]
+    for place in range(begin, end):
+        next_x, next_y = points[place, 0], points[place, 1]
+        mask[next_y + 1, next_x + 1] = 1
+        twice += x * next_y - next_x * y
+        x, y = next_x, next_y
+    return abs(twice)
+
+
 def nodes(
     pixels: Array, words: Array, levels: int, limits: Array, most: int, most_outlines: int, shortest: int
 ) -> Array:
@@ -251,48 +265,50 @@ def outlines(pixels: Array, chosen: Array) -> tuple[Array, Array]:
     return points[: starts[-1]], starts
 
 
-def twice_beside(sides: Array, count: int, sign: int, chain: Array) -> Array:
-    """Twice the area between an axis and the convex line on the far side of `sides`, an x for each of `count` rows.
+def largest_parts(whole: Array, rows: Array, boxes: Array, wanted: Array, lowest: int) -> tuple[Array, Array]:
+    """The largest part of each wanted mask: int32 (m, 2), outlines one after the other, and int32 (k, 7): where each
+    begins, how many points it has, of which mask it is, its box.
 
-    sign: 1 for the right side, -1 for the left one. chain: room for the rows that the line bends at.
+    whole, rows: masks without holes one below the other, see `outline_kernels.masks`; what is passed is marked in them.
+    boxes: int32 (n, 4), of each within its border. wanted: bool (n,). lowest: a part must be as high.
     """
-    kept = 0
-    for row in range(count):
-        while kept > 1:
-            first, middle = chain[kept - 2], chain[kept - 1]
-            bend = (sides[middle] - sides[first]) * (row - first) - (sides[row] - sides[first]) * (
-                middle - first
-            )
-            if sign * bend > 0:
-                break
-            kept -= 1
-        chain[kept] = row
-        kept += 1
-    total: int = 0
-    for index in range(1, kept):
-        first, row = chain[index - 1], chain[index]
-        total += (sides[first] + sides[row]) * (row - first)
-    return total
-
-
-def areas(points: Array, starts: Array, lengths: Array, boxes: Array) -> Array:
-    """See `cells.CellLoops`, with the fields of the regions one by one."""
-    tallest: Array = 1
+    # An outline passes a pixel once for each of its four sides at most.
+    points = np.empty((4 * whole.size + 1, 2), np.int32)
+    found = np.empty((len(boxes), 7), np.int32)
+    count, begin = 0, 0
     for index in range(len(boxes)):
-        tallest = max(tallest, boxes[index, 3])
-    low, high, chain = np.empty(tallest, np.int64), np.empty(tallest, np.int64), np.empty(tallest, np.int64)
-    found = np.empty((len(boxes), 2), np.float64)
-    for index in range(len(boxes)):
-        top, rows = boxes[index, 1], boxes[index, 3]
-        low[:rows], high[:rows] = boxes[index, 0] + boxes[index, 2], boxes[index, 0]
-        first, end = starts[index], starts[index] + lengths[index]
-        x, y = np.int64(points[end - 1, 0]), np.int64(points[end - 1, 1])
-        twice: Array = 0
-        for place in range(first, end):
-            next_x, next_y = np.int64(points[place, 0]), np.int64(points[place, 1])
-            twice += x * next_y - next_x * y
-            x, y = next_x, next_y
-            low[y - top], high[y - top] = min(low[y - top], x), max(high[y - top], x)
-        found[index, 0] = abs(twice) * 0.5
-        found[index, 1] = (twice_beside(high, rows, 1, chain) - twice_beside(low, rows, -1, chain)) * 0.5
-    return found
+        if not wanted[index]:
+            continue
+        mask = whole[rows[index, 0] : rows[index + 1, 0]]
+        best, end = -1, begin
+        for y in range(1, mask.shape[0] - 1):
+            for x in range(1, boxes[index, 2] + 1):
+                # A run that begins in a pixel that no outline has passed is a part's first.
+                if mask[y, x] != UNSEEN or mask[y, x - 1] != 0:
+                    continue
+                place = follow(mask, x, y, 1, points, end)
+                twice = mark_passed(mask, points, end, place)
+                # From below the first of the largest: from above the last.
+                if twice >= best:
+                    best = twice
+                    for step in range(place - end):
+                        points[begin + step, 0], points[begin + step, 1] = (
+                            points[end + step, 0],
+                            points[end + step, 1],
+                        )
+                    end = begin + place - end
+        if best >= 0:
+            shift_x, shift_y = boxes[index, 0], boxes[index, 1]
+            left, top, right, bottom = points[begin, 0], points[begin, 1], points[begin, 0], points[begin, 1]
+            for place in range(begin, end):
+                left, right = min(left, points[place, 0]), max(right, points[place, 0])
+                bottom = max(bottom, points[place, 1])
+                points[place, 0] += shift_x
+                points[place, 1] += shift_y
+            if bottom - top + 1 >= lowest:
+                found[count, 0], found[count, 1], found[count, 2] = begin, end - begin, index
+                found[count, 3], found[count, 4] = left + shift_x, top + shift_y
+                found[count, 5], found[count, 6] = right - left + 1, bottom - top + 1
+                begin = end
+                count += 1
+    return points[:begin].copy(), found[:count].copy()

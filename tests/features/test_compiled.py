@@ -18,7 +18,7 @@ from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find import cells
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
-from lightgesture.features.find.proposals import plain_distinct, whole_regions
+from lightgesture.features.find.proposals import plain_distinct, whole_regions, without_forearms
 from lightgesture.features.find.selector_file import load_classical
 from lightgesture.features.skin_map import skin_map
 from lightgesture.sources import open_source
@@ -92,6 +92,18 @@ def test_any_map_has_the_same_regions_within_regions(fast, seed, height, width, 
     regions = whole_regions(skin, levels)
     _assert_same_regions(regions, whole_regions(skin, levels, fast.regions))
     assert fast.cells.areas(regions).tobytes() == cells.PLAIN.areas(regions).tobytes()
+    hands = without_forearms(regions)
+    _assert_same_regions(hands, without_forearms(regions, fast.regions))
+    assert fast.cells.areas(hands).tobytes() == cells.PLAIN.areas(hands).tobytes()
+
+
+def test_a_region_larger_than_any_of_a_working_picture_is_cut_alike(fast):
+    skin = np.zeros((400, 400), np.uint8)
+    cv2.circle(skin, (150, 120), 80, 255, cv2.FILLED)
+    cv2.rectangle(skin, (110, 120), (190, 350), 255, cv2.FILLED)
+    regions = whole_regions(skin)
+    assert len(without_forearms(regions)) == 1
+    _assert_same_regions(without_forearms(regions), without_forearms(whole_regions(skin), fast.regions))
 
 
 @given(

@@ -11,10 +11,9 @@ from lightgesture.features import find_hands
 from lightgesture.features.colour import ColourStage, reduce_picture
 from lightgesture.features.find import cells, proposals
 from lightgesture.features.find.classical import ARMS, STANDING_OUT, Loops, Scene, Scorer
+from lightgesture.features.find.forearms import cut_forearm, palm_circle
 from lightgesture.features.find.proposals import (
     MOST,
-    cut_forearm,
-    palm_circle,
     propose,
 )
 from lightgesture.features.find.selector import choose, load_selector

@@ -148,7 +148,7 @@ class Glanced:
         """float32 (n,): IoU of each region with the best hand, with its forearm or without it, whichever is more."""
         found = overlaps_with(self.picture, self.colour, self.regions)
         for number in range(len(self.regions)) if self.picture.boxes else ():
-            hand = without_forearms(self.regions, [number])
+            hand = without_forearms(self.regions.taken(np.array([number])))
             if len(hand):
                 found[number] = max(found[number], overlaps_with(self.picture, self.colour, hand)[0])
         return found

@@ -193,16 +193,25 @@ def distinct(boxes: Array, most: int) -> Array:
 
 
 def walk(
-    roots: Array, feature: Array, threshold: Array, children: Array, leaf: Array, depth: int, rows: Array
+    roots: Array, feature: Array, threshold: Array, first: Array, leaf: Array, depth: int, rows: Array
 ) -> Array:
-    """See `trees.Walk`, with the fields of the trees one by one."""
-    # Row by row within a tree: the steps of several rows are under way at once, and none waits for a leaf.
-    found = np.zeros(len(rows), np.int64)
+    """See `trees.Walk`, with the fields of the trees one by one, of unsigned numbers where they name places."""
+    count = len(rows)
+    found = np.zeros(count + 3, np.int64)
     for tree in range(len(roots)):
-        root = roots[tree]
-        for row in range(len(rows)):
-            node = root
+        # Four rows at once, the last perhaps again, as none of their steps waits for another's.
+        for row in range(0, count, 4):
+            one, other = rows[row], rows[min(row + 1, count - 1)]
+            third, fourth = rows[min(row + 2, count - 1)], rows[min(row + 3, count - 1)]
+            a = np.uint64(roots[tree])
+            b, c, d = a, a, a
             for _ in range(depth):
-                node = children[2 * node + np.int64(rows[row, feature[node]] > threshold[node])]
-            found[row] += leaf[node]
-    return found
+                a = first[a] + np.uint32(one[feature[a]] > threshold[a])
+                b = first[b] + np.uint32(other[feature[b]] > threshold[b])
+                c = first[c] + np.uint32(third[feature[c]] > threshold[c])
+                d = first[d] + np.uint32(fourth[feature[d]] > threshold[d])
+            found[row] += leaf[a]
+            found[row + 1] += leaf[b]
+            found[row + 2] += leaf[c]
+            found[row + 3] += leaf[d]
+    return found[:count].copy()

@@ -42,9 +42,7 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     walk, measure = found["walk"], found["areas"]
 
     def walk_trees(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]:
-        total: NDArray[np.int64] = walk(
-            trees.roots, trees.feature, trees.threshold, trees.children, trees.leaf, trees.depth, rows
-        )
+        total: NDArray[np.int64] = walk(*_narrow(trees), trees.depth, rows)
         return total
 
     def areas(regions: Proposals) -> NDArray[np.float64]:
@@ -60,6 +58,18 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     whole = partial(_whole, found["nodes"], found["distinct"], found["outlines"])
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
     return Loops(skin, in_cells, RegionLoops(whole, found["distinct"], forearms), walk_trees)
+
+
+@lru_cache(maxsize=8)
+def _narrow(trees: FlatTrees) -> tuple[NDArray[Any], ...]:
+    """Roots, features, thresholds, children and leaves as the compiled loop takes them: a tree fits a near cache."""
+    return (
+        trees.roots.astype(np.uint32),
+        trees.feature.astype(np.uint16),
+        trees.threshold,
+        trees.first.astype(np.uint32),
+        trees.leaf,
+    )
 
 
 def _whole(

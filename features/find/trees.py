@@ -36,6 +36,8 @@ class Trees:
         for child in (self.left, self.right):
             if child.size and (child.min() < 0 or child.max() >= shape[1]):
                 raise ValueError("a tree points outside its nodes")
+        if shape[0] and not shape[1]:
+            raise ValueError("the trees have no nodes")
         if self._leads_twice():
             raise ValueError("a tree leads to one of its nodes twice")
         if self.feature.size and (self.feature.min() < 0 or self.feature.max() >= columns):
@@ -48,12 +50,18 @@ class Trees:
             raise ValueError("the depth of the trees must be 0 to 64")
 
     def _leads_twice(self) -> bool:
-        """Whether two nodes, or none but itself, lead to one: then it is no tree and may go round in a circle."""
-        own = np.arange(self.left.shape[1])
-        first = np.arange(len(self.left))[:, None] * len(own)
-        is_leaf = (self.left == own) & (self.right == own)
-        led_to = [(first + child)[~is_leaf] for child in (self.left, self.right)]
-        return bool((np.bincount(np.concatenate([*led_to, first.ravel()]), minlength=1) > 1).any())
+        """Whether a walk from the root may come to a node in two ways: then it is no tree and may go round for ever."""
+        first = np.arange(len(self.left))[:, None] * self.left.shape[1]
+        left, right = (first + self.left).ravel(), (first + self.right).ravel()
+        seen = np.zeros(left.size, bool)
+        led_to = first.ravel()
+        while led_to.size:
+            if seen[led_to].any() or len(np.unique(led_to)) < len(led_to):
+                return True
+            seen[led_to] = True
+            inner = led_to[(left[led_to] != led_to) | (right[led_to] != led_to)]
+            led_to = np.concatenate([left[inner], right[inner]])
+        return False
 
 
 def evaluate(trees: Trees, rows: NDArray[np.float32]) -> NDArray[np.float32]:

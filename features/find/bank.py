@@ -84,14 +84,25 @@ def bank_distances(contours: Sequence[Contour], bank: Bank) -> Float:
 
     contours: as `describe_outlines` takes them. Descriptors are of outlines of size 1, so 0.1 is near and 1 is far.
     """
-    found = describe_outlines(contours, bank.settings)
+    return distances_from(describe_outlines(contours, bank.settings), bank)
+
+
+def distances_from(described: Float, bank: Bank) -> Float:
+    """`bank_distances` of outlines that are described, float32 (n, settings.length)."""
     # |a - b|² = |a|² - 2 ab + |b|²: all pairs by one matrix product; rounding may leave a tiny negative square.
-    squares = found @ (-2.0 * bank.centres.T)
-    squares += np.square(found).sum(axis=1, keepdims=True)
-    squares += np.square(bank.centres).sum(axis=1)
-    starts = np.searchsorted(bank.owner, np.arange(len(bank.classes)))
+    factors, constant, starts = _of_centres(bank)
+    squares = described @ factors
+    squares += np.square(described).sum(axis=1, keepdims=True)
+    squares += constant
     nearest = np.minimum.reduceat(squares, starts, axis=1)
     return np.asarray(np.sqrt(np.maximum(nearest, 0.0)), np.float32)
+
+
+@lru_cache(maxsize=4)
+def _of_centres(bank: Bank) -> tuple[Float, Float, NDArray[np.intp]]:
+    """-2 times the centres, a column each; their squares; where each class begins."""
+    starts = np.searchsorted(bank.owner, np.arange(len(bank.classes)))
+    return -2.0 * bank.centres.T, np.square(bank.centres).sum(axis=1), starts
 
 
 def hand_proximity(distances: Float, bank: Bank) -> Float:
@@ -101,11 +112,15 @@ def hand_proximity(distances: Float, bank: Bank) -> Float:
     """
     if OTHER not in bank.classes or len(bank.classes) < 2:
         raise ValueError(f"the bank must hold hands and the class {OTHER!r}; build it with both")
-    index = bank.classes.index(OTHER)
-    other = distances[:, index]
-    hand = np.delete(distances, index, axis=1).min(axis=1)
+    other, hand = distances[:, bank.classes.index(OTHER)], nearest_hand(distances, bank)
     both = other + hand
     return np.asarray(np.where(both > 0.0, other / np.maximum(both, 1e-9), 0.5), np.float32)
+
+
+def nearest_hand(distances: Float, bank: Bank) -> Float:
+    """float32 (n,): the distance of each outline to the nearest hand. distances: of `bank_distances`."""
+    hands = [index for index, name in enumerate(bank.classes) if name != OTHER]
+    return np.asarray(distances.take(hands, axis=1).min(axis=1), np.float32)
 
 
 def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings | None = None) -> Float:
@@ -119,7 +134,21 @@ def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings 
     settings = settings or DescriptorSettings()
     if not contours:
         return np.zeros((0, settings.length), np.float32)
-    x, y = _sample(contours, settings.points)
+    lengths = np.array([len(contour) for contour in contours])
+    return describe_points(np.concatenate(contours), np.cumsum(lengths) - lengths, lengths, settings)
+
+
+def describe_points(
+    points: NDArray[np.int32],
+    starts: NDArray[np.int64],
+    lengths: NDArray[np.int64],
+    settings: DescriptorSettings,
+) -> Float:
+    """`describe_outlines` of outlines in one array, int32 (m, 2). starts, lengths: int64 (n,), where each begins and
+    how many points it has."""
+    # Evenly spaced among its own.
+    chosen = starts[:, None] + lengths[:, None] * np.arange(settings.points) // settings.points
+    x, y = points[:, 0].take(chosen).astype(np.float32), points[:, 1].take(chosen).astype(np.float32)
     x -= x.mean(axis=1, keepdims=True)
     y -= y.mean(axis=1, keepdims=True)
     spread = np.sqrt((np.square(x) + np.square(y)).mean(axis=1, keepdims=True))
@@ -129,15 +158,6 @@ def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings 
     real, imaginary = coefficients[:, : 2 * settings.harmonics], coefficients[:, 2 * settings.harmonics :]
     cosine, sine = shifts[0][start], shifts[1][start]
     return np.concatenate([real * cosine - imaginary * sine, real * sine + imaginary * cosine], axis=1)
-
-
-def _sample(contours: Sequence[Contour], count: int) -> tuple[Float, Float]:
-    """`count` points of each outline, evenly spaced among its own: x and y, float32 (n, count)."""
-    lengths = np.array([len(contour) for contour in contours])
-    first = np.cumsum(lengths) - lengths
-    chosen = first[:, None] + lengths[:, None] * np.arange(count) // count
-    points = np.concatenate(contours)[chosen].astype(np.float32)
-    return points[..., 0].copy(), points[..., 1].copy()
 
 
 @lru_cache(maxsize=4)

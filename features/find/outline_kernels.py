@@ -150,3 +150,39 @@ def arms(whole: Array, rows: Array, boxes: Array, distances: Array, discs: Array
             disc = discs[np.int64(np.rint(ARM_RING * radius))]
             found[index, 4], found[index, 5], found[index, 6] = sum_arm(mask, top, x, y, disc)
     return found
+
+
+def colours(picture: Array, whole: Array, rows: Array, boxes: Array) -> Array:
+    """float64 (n, 3): see `proposals.RegionLoops`. whole, rows: of `masks`."""
+    found = np.empty((len(boxes), 3), np.float64)
+    for index in range(len(boxes)):
+        left, top = boxes[index, 0], boxes[index, 1]
+        first: Array = 0
+        second: Array = 0
+        third: Array = 0
+        for y in range(boxes[index, 3]):
+            row = whole[rows[index, 0] + y + 1]
+            for x in range(boxes[index, 2]):
+                if row[x + 1] != 0:
+                    first += picture[top + y, left + x, 0]
+                    second += picture[top + y, left + x, 1]
+                    third += picture[top + y, left + x, 2]
+        share = 1.0 / rows[index, 1]
+        found[index, 0], found[index, 1], found[index, 2] = first * share, second * share, third * share
+    return found
+
+
+def overlaps(boxes: Array) -> Array:
+    """float64 (n, n): see `proposals.RegionLoops`."""
+    count = len(boxes)
+    found = np.empty((count, count), np.float64)
+    for one in range(count):
+        x, y, width, height = boxes[one, 0], boxes[one, 1], boxes[one, 2], boxes[one, 3]
+        for other in range(one + 1):
+            across = min(x + width, boxes[other, 0] + boxes[other, 2]) - max(x, boxes[other, 0])
+            down = min(y + height, boxes[other, 1] + boxes[other, 3]) - max(y, boxes[other, 1])
+            both = max(across, 0) * max(down, 0)
+            union = width * height + boxes[other, 2] * boxes[other, 3] - both
+            found[one, other] = both / max(np.float64(union), 1e-9)
+            found[other, one] = found[one, other]
+    return found

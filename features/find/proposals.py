@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.find.forearms import cut_forearm
-from lightgesture.features.geometry import keep_distinct
+from lightgesture.features.find.forearms import cut_forearm, fill_contour
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.types import Box, Contour, Image
 
 LEVELS: Final = 24
@@ -153,11 +153,15 @@ class RegionLoops:
     """What passes over the levels of the skin map, over boxes and over the pixels of regions.
 
     whole: (skin, levels) -> `whole_regions`. distinct: see `Distinct`. forearms: regions -> `without_forearms`.
+    overlaps: boxes -> float64 (n, n), IoU of every two. colours: (picture, regions) -> float64 (n, 3), mean blue, green
+        and red inside each outline, 0 to 255.
     """
 
     whole: Callable[[Image, int], Proposals]
     distinct: Distinct
     forearms: Callable[[Proposals], Proposals]
+    overlaps: Callable[[NDArray[np.int32]], NDArray[np.float64]]
+    colours: Callable[[Image, Proposals], NDArray[np.float64]]
 
 
 def whole_regions(skin: Image, levels: int = LEVELS, loops: RegionLoops | None = None) -> Proposals:
@@ -204,7 +208,20 @@ def plain_forearms(regions: Proposals) -> Proposals:
     return Proposals.of([cv2.boundingRect(hand) for hand in left], left, regions.levels[cut], True)  # type: ignore[misc]
 
 
-PLAIN: Final = RegionLoops(plain_whole, plain_distinct, plain_forearms)
+def _plain_overlaps(boxes: NDArray[np.int32]) -> NDArray[np.float64]:
+    return pairwise_iou(boxes, boxes)
+
+
+def _plain_colours(picture: Image, regions: Proposals) -> NDArray[np.float64]:
+    means = np.empty((len(regions), 3))
+    for number in range(len(regions)):
+        x, y, width, height = box = regions.box(number)
+        mask = fill_contour(regions.contour(number), box)
+        means[number] = cv2.mean(picture[y : y + height, x : x + width], mask)[:3]
+    return means
+
+
+PLAIN: Final = RegionLoops(plain_whole, plain_distinct, plain_forearms, _plain_overlaps, _plain_colours)
 
 
 def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:

@@ -57,7 +57,9 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     in_cells = CellLoops(_of_writeable(found["sums"]), found["cells"], areas)
     whole = partial(_whole, found["nodes"], found["distinct"], found["outlines"])
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
-    return Loops(skin, in_cells, RegionLoops(whole, found["distinct"], forearms), walk_trees)
+    colours = _of_writeable(partial(_mean_colours, found["masks"], found["colours"]))
+    regions = RegionLoops(whole, found["distinct"], forearms, found["overlaps"], colours)
+    return Loops(skin, in_cells, regions, walk_trees)
 
 
 @lru_cache(maxsize=8)
@@ -129,6 +131,15 @@ def _without_forearms(
         regions.levels[hands[:, 2]],
         np.ones(len(hands), bool),
     )
+
+
+def _mean_colours(
+    masks: Callable[..., Any], colours: Callable[..., Any], picture: Image, regions: Proposals
+) -> NDArray[np.float64]:
+    """`RegionLoops.colours` by compiled loops."""
+    whole, rows = masks(regions.points, regions.starts, regions.lengths, regions.boxes)
+    means: NDArray[np.float64] = colours(picture, whole, rows, regions.boxes)
+    return means
 
 
 @lru_cache(maxsize=1)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from lightgesture.actions.decode import SAMPLE
 from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find import cells
+from lightgesture.features.find import cells, proposals
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
 from lightgesture.features.find.proposals import plain_distinct, whole_regions, without_forearms
 from lightgesture.features.find.selector_file import load_classical
@@ -95,6 +95,11 @@ def test_any_map_has_the_same_regions_within_regions(fast, seed, height, width, 
     hands = without_forearms(regions)
     _assert_same_regions(hands, without_forearms(regions, fast.regions))
     assert fast.cells.areas(hands).tobytes() == cells.PLAIN.areas(hands).tobytes()
+    every = regions.joined(hands)
+    assert fast.regions.overlaps(every.boxes).tobytes() == proposals.PLAIN.overlaps(every.boxes).tobytes()
+    picture = _textured(seed, height, width, 1.0)
+    colours = proposals.PLAIN.colours(picture, every)
+    assert fast.regions.colours(picture, every).tobytes() == colours.tobytes()
 
 
 def test_a_region_larger_than_any_of_a_working_picture_is_cut_alike(fast):

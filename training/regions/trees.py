@@ -211,7 +211,7 @@ def fit_pairs(
     return ClassicalParts(first, second, fit_trees(rows, targets, PAIR_TREES, seed), bank)
 
 
-def _lower_of_both(overlaps: Float, pairs: Sequence[tuple[int, int]]) -> Float:
+def _lower_of_both(overlaps: Float, pairs: NDArray[np.intp]) -> Float:
     """float32 (pairs,): the lower IoU of the two regions of each pair, given that of each region."""
     return np.array([min(overlaps[one], overlaps[other]) for one, other in pairs], np.float32)
 

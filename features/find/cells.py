@@ -45,12 +45,12 @@ Sums = NDArray[np.int32]
 class CellLoops:
     """The passes over pixels and over cells.
 
-    sums: (luma, skin, dx, dy), uint8 (h, w) twice and int16 (h, w) twice, -> `Sums`. cells: (sums, boxes), boxes int32
+    sums: (luma, skin), uint8 (h, w) both, -> `Sums`. cells: (sums, boxes), boxes int32
         (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²). areas: regions -> float64 (n, 2), the area that each outline
         encloses and that of its convex hull.
     """
 
-    sums: Callable[[Image, Image, NDArray[np.int16], NDArray[np.int16]], Sums]
+    sums: Callable[[Image, Image], Sums]
     cells: Callable[[Sums, NDArray[np.int32]], Float]
     areas: Callable[[Proposals], NDArray[np.float64]]
 
@@ -62,9 +62,7 @@ _ROOTS: Final = np.rint(np.sqrt(np.arange(256) * 255.0)).astype(np.uint8)
 def channel_sums(picture: Image, skin: Image, loops: CellLoops | None = None) -> Sums:
     """The integral images of a BGR picture, uint8 (h, w, 3), and its skin map, uint8 (h, w)."""
     luma = np.asarray(cv2.LUT(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), _ROOTS), np.uint8)
-    dx = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 1, 0, ksize=3), np.int16)
-    dy = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 0, 1, ksize=3), np.int16)
-    return (loops or PLAIN).sums(luma, skin, dx, dy)
+    return (loops or PLAIN).sums(luma, skin)
 
 
 def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellLoops | None = None) -> Float:
@@ -98,7 +96,9 @@ def _shapes(regions: Proposals, areas: NDArray[np.float64], size: tuple[int, int
     return rows
 
 
-def _plain_sums(luma: Image, skin: Image, dx: NDArray[np.int16], dy: NDArray[np.int16]) -> Sums:
+def _plain_sums(luma: Image, skin: Image) -> Sums:
+    dx = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 1, 0, ksize=3), np.int16)
+    dy = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 0, 1, ksize=3), np.int16)
     across, down = np.abs(dx), np.abs(dy)
     wide, tall = across.astype(np.int32), down.astype(np.int32)
     strength = np.sqrt((wide * wide + tall * tall).astype(np.float32))

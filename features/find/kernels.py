@@ -22,9 +22,11 @@ from lightgesture.features.skin_map import FINE, SHARE_BITS
 # Numba has no types that a type checker knows.
 Array = Any
 
-HELPERS = ()
-"""What the loops call: nothing."""
+HELPERS = ("slopes",)
+"""What the loops call."""
 COUNT = CELLS * CELLS
+NONE, QUARTER, STRONGEST = np.float32(0.0), np.float32(0.25), np.float32(255.0)
+NEAR, FAR = np.float32(12.0), np.float32(29.0)
 STEP_UNIT = 10 * CELLS
 FIRST_STEP = 5 * CELLS - CELLS * CONTEXT_TENTHS // 2
 
@@ -88,38 +90,55 @@ def look_up(values: Array, lowest: int, shift: int, levels: Array) -> Array:
     return found
 
 
-def sums(luma: Array, skin: Array, dx: Array, dy: Array) -> Array:
+def slopes(luma: Array, y: int, smooth: Array, slope: Array) -> None:
+    """Write what a row of Sobel's derivatives is made of, float32 (w + 2,): the rows round y by 1-2-1 and the last less
+    the first, with a pixel more at either end."""
+    height, width = luma.shape
+    # At the rim the pixel on the other side counts twice, as in OpenCV.
+    above = luma[abs(y - 1) if height > 1 else 0]
+    here = luma[y]
+    below = luma[y + 1 if y + 1 < height else max(height - 2, 0)]
+    for x in range(width):
+        first, last = np.float32(above[x]), np.float32(below[x])
+        smooth[x + 1] = first + np.float32(2.0) * np.float32(here[x]) + last
+        slope[x + 1] = last - first
+    inner, outer = min(2, width), max(width - 1, 1)
+    smooth[0], smooth[width + 1] = smooth[inner], smooth[outer]
+    slope[0], slope[width + 1] = slope[inner], slope[outer]
+
+
+def sums(luma: Array, skin: Array) -> Array:
     """See `cells.CellLoops`."""
     height, width = luma.shape
-    found = np.zeros((2 + DIRECTIONS, height + 1, width + 1), np.int32)
+    found = np.empty((2 + DIRECTIONS, height + 1, width + 1), np.int32)
+    found[:, 0, :] = 0
+    columns = np.zeros((2 + DIRECTIONS, width), np.int32)
+    smooth, slope = np.empty(width + 2, np.float32), np.empty(width + 2, np.float32)
+    # Single precision holds all these whole numbers; each of these loops is one of vectors.
     for y in range(height):
-        lumas: Array = 0
-        skins: Array = 0
-        first: Array = 0
-        second: Array = 0
-        third: Array = 0
-        fourth: Array = 0
+        slopes(luma, y, smooth, slope)
         for x in range(width):
-            lumas += np.int64(luma[y, x])
-            skins += np.int64(skin[y, x])
-            along_x, along_y = np.int64(dx[y, x]), np.int64(dy[y, x])
-            strength = np.sqrt(np.float32(along_x * along_x + along_y * along_y)) * np.float32(0.25)
-            magnitude = np.int64(min(strength, np.float32(255.0)))
+            columns[0, x] += luma[y, x]
+            columns[1, x] += skin[y, x]
+        for x in range(width):
+            along_x = smooth[x + 2] - smooth[x]
+            along_y = slope[x] + np.float32(2.0) * slope[x + 1] + slope[x + 2]
+            strength = np.sqrt(along_x * along_x + along_y * along_y) * QUARTER
+            magnitude = np.int32(strength if strength < STRONGEST else STRONGEST)
             wide, tall = abs(along_x), abs(along_y)
-            if 29 * tall < 12 * wide:
-                first += magnitude
-            elif 29 * wide < 12 * tall:
-                third += magnitude
-            elif (along_x ^ along_y) >= 0:
-                second += magnitude
-            else:
-                fourth += magnitude
-            found[0, y + 1, x + 1] = found[0, y, x + 1] + lumas
-            found[1, y + 1, x + 1] = found[1, y, x + 1] + skins
-            found[2, y + 1, x + 1] = found[2, y, x + 1] + first
-            found[3, y + 1, x + 1] = found[3, y, x + 1] + second
-            found[4, y + 1, x + 1] = found[4, y, x + 1] + third
-            found[5, y + 1, x + 1] = found[5, y, x + 1] + fourth
+            is_wide, is_tall = FAR * tall < NEAR * wide, FAR * wide < NEAR * tall
+            is_rising = (along_x < NONE) == (along_y < NONE)
+            is_slanted = not (is_wide or is_tall)
+            columns[2, x] += magnitude if is_wide else np.int32(0)
+            columns[3, x] += magnitude if is_slanted and is_rising else np.int32(0)
+            columns[4, x] += magnitude if is_tall else np.int32(0)
+            columns[5, x] += magnitude if is_slanted and not is_rising else np.int32(0)
+        for plane in range(2 + DIRECTIONS):
+            total: Array = 0
+            found[plane, y + 1, 0] = 0
+            for x in range(width):
+                total += columns[plane, x]
+                found[plane, y + 1, x + 1] = total
     return found
 
 

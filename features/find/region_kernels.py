@@ -203,6 +203,10 @@ def nodes(
     )
     scratch = np.empty((SMALL, 2), np.int32)
     found = np.empty((most, 7), np.int32)
+    highest = np.zeros(height, np.int64)
+    for y in range(height):
+        for x in range(width):
+            highest[y] = max(highest[y], pixels[y, x])
     count, outlines, level = 0, 0, levels
     while level > 1 and count < most and outlines < most_outlines:
         level -= 1
@@ -210,6 +214,9 @@ def nodes(
         runs, label_count, gap_count = 0, 0, 1
         for y in range(1, height):
             now, old, runs_above = y & 1, 1 - (y & 1), runs
+            if highest[y] < level and runs_above == 0:
+                gaps[now, 0] = 0
+                continue
             runs = find_edges(words[y], level, edges[now])
             gap_count = join_gaps(
                 edges[now], runs, gaps[now], edges[old], runs_above, gaps[old], gap_parents, gap_count

@@ -45,12 +45,12 @@ Sums = NDArray[np.int32]
 class CellLoops:
     """The passes over pixels and over cells.
 
-    sums: (luma, skin), uint8 (h, w) both, -> `Sums`. cells: (sums, boxes), boxes int32
+    sums: (luma, skin, room): writes the `Sums` of two pictures, uint8 (h, w), there. cells: (sums, boxes), boxes int32
         (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²). areas: regions -> float64 (n, 2), the area that each outline
         encloses and that of its convex hull.
     """
 
-    sums: Callable[[Image, Image], Sums]
+    sums: Callable[[Image, Image, Sums], None]
     cells: Callable[[Sums, NDArray[np.int32]], Float]
     areas: Callable[[Proposals], NDArray[np.float64]]
 
@@ -59,10 +59,19 @@ class CellLoops:
 _ROOTS: Final = np.rint(np.sqrt(np.arange(256) * 255.0)).astype(np.uint8)
 
 
-def channel_sums(picture: Image, skin: Image, loops: CellLoops | None = None) -> Sums:
-    """The integral images of a BGR picture, uint8 (h, w, 3), and its skin map, uint8 (h, w)."""
+def channel_sums(
+    picture: Image, skin: Image, loops: CellLoops | None = None, room: Sums | None = None
+) -> Sums:
+    """The integral images of a BGR picture, uint8 (h, w, 3), and its skin map, uint8 (h, w).
+
+    room: is used for them where it has their size, because memory that the system must give anew for every frame takes
+    longer than the sums.
+    """
     luma = np.asarray(cv2.LUT(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), _ROOTS), np.uint8)
-    return (loops or PLAIN).sums(luma, skin)
+    shape = 2 + DIRECTIONS, luma.shape[0] + 1, luma.shape[1] + 1
+    found = room if room is not None and room.shape == shape else np.empty(shape, np.int32)
+    (loops or PLAIN).sums(luma, skin, found)
+    return found
 
 
 def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellLoops | None = None) -> Float:
@@ -96,7 +105,7 @@ def _shapes(regions: Proposals, areas: NDArray[np.float64], size: tuple[int, int
     return rows
 
 
-def _plain_sums(luma: Image, skin: Image) -> Sums:
+def _plain_sums(luma: Image, skin: Image, room: Sums) -> None:
     dx = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 1, 0, ksize=3), np.int16)
     dy = np.asarray(cv2.Sobel(luma, cv2.CV_16S, 0, 1, ksize=3), np.int16)
     across, down = np.abs(dx), np.abs(dy)
@@ -111,7 +120,8 @@ def _plain_sums(luma: Image, skin: Image) -> Sums:
     slanted = ~(along_x | along_y)
     masks = along_x, slanted & rising, along_y, slanted & ~rising
     planes = [luma, skin, *(magnitude * mask for mask in masks)]
-    return np.stack([cv2.integral(plane, sdepth=cv2.CV_32S) for plane in planes]).astype(np.int32, copy=False)
+    for plane, found in zip(planes, room, strict=True):
+        cv2.integral(plane, found, cv2.CV_32S)
 
 
 def _edges(start: NDArray[np.int32], side: NDArray[np.int32], end: int) -> NDArray[np.int32]:
@@ -130,18 +140,19 @@ def _plain_cells(sums: Sums, boxes: NDArray[np.int32]) -> Float:
     strips = corners[:, :, 1:] - corners[:, :, :-1]
     totals = strips[..., 1:] - strips[..., :-1]
     areas = np.diff(rows, axis=1)[:, :, None] * np.diff(columns, axis=1)[:, None, :]
-    whole = np.concatenate([totals[:2], totals[2:].sum(axis=0, keepdims=True), totals[2:]])
-    means = (whole * np.int64(PART) + areas // 2) // np.maximum(areas, 1)
+    # Double precision holds all these whole numbers, and rounding does not lift a quotient to the next one.
+    whole = np.concatenate([totals[:2], totals[2:].sum(axis=0, keepdims=True), totals[2:]]).astype(np.float64)
+    means = np.floor((whole * PART + areas // 2) / np.maximum(areas, 1))
     means = means.reshape(len(whole), len(boxes), CELLS**2)
     luma, skin, gradients = means[0], means[1], means[2:]
     count = CELLS**2
     total = luma.sum(axis=1, keepdims=True)
-    spread = np.sqrt((count * (luma * luma).sum(axis=1, keepdims=True) - total * total).astype(np.float64))
+    spread = np.sqrt(count * (luma * luma).sum(axis=1, keepdims=True) - total * total)
     found = np.empty((len(boxes), 3 + DIRECTIONS, count), np.float32)
     found[:, 0] = (count * luma - total) / (spread + count * LUMA_FLOOR)
-    found[:, 1] = skin / np.float64(255 * PART)
+    found[:, 1] = skin / (255 * PART)
     strength = gradients[0].sum(axis=1) + count * GRADIENT_FLOOR
-    found[:, 2:] = ((count * gradients) / strength[:, None].astype(np.float64)).transpose(1, 0, 2)
+    found[:, 2:] = ((count * gradients) / strength[:, None]).transpose(1, 0, 2)
     return found.reshape(len(boxes), (3 + DIRECTIONS) * count)
 
 

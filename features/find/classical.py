@@ -6,6 +6,7 @@ the bank, by more trees. So a frame costs a bounded time whatever it shows. Sele
 baseline of every table.
 """
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -71,9 +72,10 @@ class Scene:
     size: tuple[int, int]
 
     @classmethod
-    def of(cls, colour: ColourMap, loops: Loops) -> "Scene":
+    def of(cls, colour: ColourMap, loops: Loops, room: cells.Sums | None = None) -> "Scene":
+        """room: of `cells.channel_sums`."""
         skin = skin_map(colour.picture, loops.skin) if colour.skin_of is skin_map else colour.skin
-        sums = cells.channel_sums(colour.picture, skin, loops.cells)
+        sums = cells.channel_sums(colour.picture, skin, loops.cells, room)
         return cls(skin, sums, (skin.shape[1], skin.shape[0]))
 
 
@@ -184,11 +186,18 @@ class ClassicalSelector:
         self._loops = loops or Loops()
         self._scorer = Scorer(parts.glance, parts.regions, parts.bank, self._loops)
         self._pairs = FlatTrees.of(parts.pairs)
+        # Of frames before: one for each thread that searches at a time.
+        self._rooms: deque[cells.Sums] = deque()
 
     def process(self, colour: ColourMap) -> Candidates:
         """Score the regions of one frame. A frame without contrast gives no candidates."""
-        scene = Scene.of(colour, self._loops)
+        try:
+            room = self._rooms.pop()
+        except IndexError:
+            room = None
+        scene = Scene.of(colour, self._loops, room)
         proposals, scores = self._scorer.process(scene)
+        self._rooms.append(scene.sums)
         overlap = self._loops.regions.overlaps(proposals.boxes)
         kept, items = scored_candidates(colour, proposals, scores, overlap, self._loops.regions)
         together = scored_pairs(

@@ -107,10 +107,9 @@ def slopes(luma: Array, y: int, smooth: Array, slope: Array) -> None:
     slope[0], slope[width + 1] = slope[inner], slope[outer]
 
 
-def sums(luma: Array, skin: Array) -> Array:
+def sums(luma: Array, skin: Array, found: Array) -> None:
     """See `cells.CellLoops`."""
     height, width = luma.shape
-    found = np.empty((2 + DIRECTIONS, height + 1, width + 1), np.int32)
     found[:, 0, :] = 0
     columns = np.zeros((2 + DIRECTIONS, width), np.int32)
     smooth, slope = np.empty(width + 2, np.float32), np.empty(width + 2, np.float32)
@@ -139,7 +138,6 @@ def sums(luma: Array, skin: Array) -> Array:
             for x in range(width):
                 total += columns[plane, x]
                 found[plane, y + 1, x + 1] = total
-    return found
 
 
 def cells(summed: Array, boxes: Array) -> Array:

@@ -138,10 +138,13 @@ Distinct = Callable[[NDArray[np.int32], int], NDArray[np.intp]]
 
 def plain_distinct(boxes: NDArray[np.int32], most: int) -> NDArray[np.intp]:
     """A `Distinct` by NumPy."""
-    low, high = boxes[:, :2], boxes[:, :2] + boxes[:, 2:]
-    sides = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
-    np.maximum(sides, 0, out=sides)
-    both = sides[..., 0] * sides[..., 1]
+    sides = []
+    for begin, length in ((boxes[:, 0], boxes[:, 2]), (boxes[:, 1], boxes[:, 3])):
+        end = begin + length
+        side = np.minimum(end[:, None], end)
+        side -= np.maximum(begin[:, None], begin)
+        sides.append(np.maximum(side, 0, out=side))
+    both = sides[0] * sides[1]
     areas = boxes[:, 2] * boxes[:, 3]
     # both / union > SAME_HUNDREDTHS / 100 in whole numbers.
     same = (100 + SAME_HUNDREDTHS) * both > SAME_HUNDREDTHS * (areas[:, None] + areas)

@@ -149,9 +149,10 @@ def describe_points(
     # Evenly spaced among its own.
     chosen = starts[:, None] + lengths[:, None] * np.arange(settings.points) // settings.points
     x, y = points[:, 0].take(chosen).astype(np.float32), points[:, 1].take(chosen).astype(np.float32)
-    x -= x.mean(axis=1, keepdims=True)
-    y -= y.mean(axis=1, keepdims=True)
-    spread = np.sqrt((np.square(x) + np.square(y)).mean(axis=1, keepdims=True))
+    count = np.float32(settings.points)
+    x -= x.sum(axis=1, keepdims=True) / count
+    y -= y.sum(axis=1, keepdims=True) / count
+    spread = np.sqrt((np.square(x) + np.square(y)).sum(axis=1, keepdims=True) / count)
     start = y.argmin(axis=1)
     transform, shifts = _transform(settings)
     coefficients = (np.concatenate([x, y], axis=1) / np.maximum(spread, SMALLEST_SPREAD)) @ transform

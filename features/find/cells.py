@@ -46,13 +46,13 @@ class CellLoops:
     """The passes over pixels and over cells.
 
     sums: (luma, skin, room): writes the `Sums` of two pictures, uint8 (h, w), there. cells: (sums, boxes), boxes int32
-        (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²). areas: regions -> float64 (n, 2), the area that each outline
-        encloses and that of its convex hull.
+        (n, 4), -> float32 (n, (3 + DIRECTIONS) CELLS²). shapes: (regions, size) -> float32 (n, SHAPE_NUMBERS), place,
+        size and outline of each region in a picture of `size`, (width, height), free of its resolution.
     """
 
     sums: Callable[[Image, Image, Sums], None]
     cells: Callable[[Sums, NDArray[np.int32]], Float]
-    areas: Callable[[Proposals], NDArray[np.float64]]
+    shapes: Callable[[Proposals, tuple[int, int]], Float]
 
 
 # The square root lifts the dark end, where a back-lit hand differs from the wall by two grey levels.
@@ -83,15 +83,13 @@ def describe(sums: Sums, regions: Proposals, size: tuple[int, int], loops: CellL
     if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
     loops = loops or PLAIN
-    shapes = _shapes(regions, loops.areas(regions), size)
-    return np.concatenate([loops.cells(sums, regions.boxes), shapes], axis=1)
+    return np.concatenate([loops.cells(sums, regions.boxes), loops.shapes(regions, size)], axis=1)
 
 
-def _shapes(regions: Proposals, areas: NDArray[np.float64], size: tuple[int, int]) -> Float:
-    """float32 (n, 9): place, size and outline of each region, free of the picture's resolution. areas: see
-    `CellLoops`."""
+def _plain_shapes(regions: Proposals, size: tuple[int, int]) -> Float:
     x, y, width, height = regions.boxes.T.astype(np.float64)
-    area, hull = areas.T
+    area = np.array([cv2.contourArea(contour) for contour in regions.contours])
+    hull = np.array([cv2.contourArea(cv2.convexHull(contour)) for contour in regions.contours])
     rows = np.empty((len(regions), SHAPE_NUMBERS), np.float32)
     rows[:, 0] = (x + width / 2) / size[0]
     rows[:, 1] = (y + height / 2) / size[1]
@@ -156,11 +154,4 @@ def _plain_cells(sums: Sums, boxes: NDArray[np.int32]) -> Float:
     return found.reshape(len(boxes), (3 + DIRECTIONS) * count)
 
 
-def _plain_areas(regions: Proposals) -> NDArray[np.float64]:
-    pairs = [
-        (cv2.contourArea(contour), cv2.contourArea(cv2.convexHull(contour))) for contour in regions.contours
-    ]
-    return np.array(pairs, np.float64).reshape(-1, 2)
-
-
-PLAIN: Final = CellLoops(_plain_sums, _plain_cells, _plain_areas)
+PLAIN: Final = CellLoops(_plain_sums, _plain_cells, _plain_shapes)

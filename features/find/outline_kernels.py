@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from lightgesture.features.find.cells import SHAPE_NUMBERS
 from lightgesture.features.find.forearms import ARM_RING, ARM_TOP
 
 # Numba has no types that a type checker knows.
@@ -40,16 +41,19 @@ def twice_beside(sides: Array, count: int, sign: int, chain: Array) -> Array:
     return total
 
 
-def areas(points: Array, starts: Array, lengths: Array, boxes: Array) -> Array:
+def shapes(
+    points: Array, starts: Array, lengths: Array, boxes: Array, cut: Array, across: int, down: int
+) -> Array:
     """See `cells.CellLoops`, with the fields of the regions one by one."""
     tallest: Array = 1
     for index in range(len(boxes)):
         tallest = max(tallest, boxes[index, 3])
     low, high, chain = np.empty(tallest, np.int64), np.empty(tallest, np.int64), np.empty(tallest, np.int64)
-    found = np.empty((len(boxes), 2), np.float64)
+    found = np.empty((len(boxes), SHAPE_NUMBERS), np.float32)
+    shorter = min(across, down)
     for index in range(len(boxes)):
-        top, rows = boxes[index, 1], boxes[index, 3]
-        low[:rows], high[:rows] = boxes[index, 0] + boxes[index, 2], boxes[index, 0]
+        left, top, width, rows = boxes[index, 0], boxes[index, 1], boxes[index, 2], boxes[index, 3]
+        low[:rows], high[:rows] = left + width, left
         first, end = starts[index], starts[index] + lengths[index]
         x, y = np.int64(points[end - 1, 0]), np.int64(points[end - 1, 1])
         twice: Array = 0
@@ -58,8 +62,17 @@ def areas(points: Array, starts: Array, lengths: Array, boxes: Array) -> Array:
             twice += x * next_y - next_x * y
             x, y = next_x, next_y
             low[y - top], high[y - top] = min(low[y - top], x), max(high[y - top], x)
-        found[index, 0] = abs(twice) * 0.5
-        found[index, 1] = (twice_beside(high, rows, 1, chain) - twice_beside(low, rows, -1, chain)) * 0.5
+        area = abs(twice) * 0.5
+        hull = (twice_beside(high, rows, 1, chain) - twice_beside(low, rows, -1, chain)) * 0.5
+        found[index, 0] = (left + width / 2) / across
+        found[index, 1] = (top + rows / 2) / down
+        found[index, 2] = width / shorter
+        found[index, 3] = rows / shorter
+        found[index, 4] = width / rows
+        found[index, 5] = area / (width * rows)
+        found[index, 6] = area / max(hull, 1.0)
+        found[index, 7] = lengths[index] / np.sqrt(max(area, 1.0))
+        found[index, 8] = 1.0 if cut[index] else 0.0
     return found
 
 

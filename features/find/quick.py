@@ -27,7 +27,7 @@ from lightgesture.features.find.proposals import (
 )
 from lightgesture.features.find.trees import FlatTrees
 from lightgesture.features.skin_map import SkinLoops
-from lightgesture.features.types import Image
+from lightgesture.features.types import Float, Image
 
 DISCS: Final = 96
 """Radii of palms, with what is round them, that the compiled loops know, pixels."""
@@ -39,22 +39,21 @@ MOST_LEVELS: Final = 128
 
 def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     """What the compiled loops of these names do, in the stages' own terms."""
-    walk, measure = found["walk"], found["areas"]
+    walk, measure = found["walk"], found["shapes"]
 
     def walk_trees(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]:
         total: NDArray[np.int64] = walk(*_narrow(trees), trees.depth, rows)
         return total
 
-    def areas(regions: Proposals) -> NDArray[np.float64]:
-        measured: NDArray[np.float64] = measure(
-            regions.points, regions.starts, regions.lengths, regions.boxes
-        )
+    def shapes(regions: Proposals, size: tuple[int, int]) -> Float:
+        points, starts, lengths = regions.points, regions.starts, regions.lengths
+        measured: Float = measure(points, starts, lengths, regions.boxes, regions.cut, *size)
         return measured
 
     skin = SkinLoops(
         _of_writeable(found["red"]), _of_writeable(found["redness"]), found["counts"], found["look_up"]
     )
-    in_cells = CellLoops(_of_writeable(found["sums"]), found["cells"], areas)
+    in_cells = CellLoops(_of_writeable(found["sums"]), found["cells"], shapes)
     whole = partial(_whole, found["nodes"], found["distinct"], found["outlines"])
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
     colours = _of_writeable(partial(_mean_colours, found["masks"], found["colours"]))

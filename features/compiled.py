@@ -21,11 +21,12 @@ from lightgesture.features.find.quick import joined
 SWITCHED_OFF: Final = "LIGHTGESTURE_PLAIN"
 """Environment variable: any text in it keeps numba out."""
 SIGNATURES: Final = {
+    "skin_kernels": {
+        "red": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], i8)",
+        "redness": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], u2[:,::1], i8, f8[::1])",
+        "stretch": "u1[:,::1](u2[:,::1], i8, i8)",
+    },
     "kernels": {
-        "red": "u2[:,::1](u1[:,:,::1], i8)",
-        "redness": "u2[:,::1](u1[:,:,::1], u2[:,::1], i8, f4[::1], f4[::1], f4[::1])",
-        "counts": "i8[::1](u2[:,::1], i8, i8, i8)",
-        "look_up": "u1[:,::1](u2[:,::1], i8, i8, u1[::1])",
         "sums": "void(u1[:,::1], u1[:,::1], i4[:,:,::1])",
         "cells": "f4[:,::1](i4[:,:,::1], i4[:,::1])",
         "distinct": "i8[::1](i4[:,::1], i8)",

@@ -1,4 +1,4 @@
-"""Loops over pixels, cells, boxes and nodes, to be compiled: what `PLAIN` of each stage computes, byte for byte.
+"""Loops over pixels, cells, boxes and trees, to be compiled: what `PLAIN` of each stage computes, byte for byte.
 
 As Python they run too, some hundred times as slow; `features/compiled.py` has numba compile them. All numbers are whole
 up to the last division, so that the order in which they are added changes nothing.
@@ -17,7 +17,6 @@ from lightgesture.features.find.cells import (
     PART,
 )
 from lightgesture.features.find.proposals import SAME_HUNDREDTHS
-from lightgesture.features.skin_map import FINE, SHARE_BITS
 
 # Numba has no types that a type checker knows.
 Array = Any
@@ -29,65 +28,6 @@ NONE, QUARTER, STRONGEST = np.float32(0.0), np.float32(0.25), np.float32(255.0)
 NEAR, FAR = np.float32(12.0), np.float32(29.0)
 STEP_UNIT = 10 * CELLS
 FIRST_STEP = 5 * CELLS - CELLS * CONTEXT_TENTHS // 2
-
-
-def red(picture: Array, share: int) -> Array:
-    """See `skin_map.SkinLoops`."""
-    height, width = picture.shape[:2]
-    found = np.empty((height, width), np.uint16)
-    for y in range(height):
-        for x in range(width):
-            value = np.int64(picture[y, x, 2])
-            given_back = ((255 - value) * np.int64(picture[y, x, 1]) * share) >> SHARE_BITS
-            found[y, x] = value * FINE + given_back
-    return found
-
-
-def redness(
-    picture: Array, compensated: Array, shift: int, blues: Array, greens: Array, reds: Array
-) -> Array:
-    """See `skin_map.SkinLoops`."""
-    height, width = compensated.shape
-    across = np.empty((height, width), np.int32)
-    line = np.empty(width, np.int32)
-    for y in range(height):
-        for x in range(width):
-            line[x] = np.int32(
-                reds[compensated[y, x] >> shift] + blues[picture[y, x, 0]] + greens[picture[y, x, 1]]
-            )
-        # At the rim the blur sees the pixel on the other side twice, as OpenCV's does.
-        if width == 1:
-            across[y, 0] = 4 * line[0]
-            continue
-        across[y, 0] = 2 * line[0] + 2 * line[1]
-        across[y, width - 1] = 2 * line[width - 1] + 2 * line[width - 2]
-        for x in range(1, width - 1):
-            across[y, x] = line[x - 1] + 2 * line[x] + line[x + 1]
-    found = np.empty((height, width), np.uint16)
-    for y in range(height):
-        above = abs(y - 1) if height > 1 else 0
-        below = y + 1 if y + 1 < height else max(height - 2, 0)
-        for x in range(width):
-            found[y, x] = (across[above, x] + 2 * across[y, x] + across[below, x]) >> 4
-    return found
-
-
-def counts(values: Array, lowest: int, highest: int, shift: int) -> Array:
-    """See `skin_map.SkinLoops`."""
-    found = np.zeros(((highest - lowest) >> shift) + 1, np.int64)
-    for y in range(values.shape[0]):
-        for x in range(values.shape[1]):
-            found[(np.int64(values[y, x]) - lowest) >> shift] += 1
-    return found
-
-
-def look_up(values: Array, lowest: int, shift: int, levels: Array) -> Array:
-    """See `skin_map.SkinLoops`."""
-    found = np.empty(values.shape, np.uint8)
-    for y in range(values.shape[0]):
-        for x in range(values.shape[1]):
-            found[y, x] = levels[(np.int64(values[y, x]) - lowest) >> shift]
-    return found
 
 
 def slopes(luma: Array, y: int, smooth: Array, slope: Array) -> None:

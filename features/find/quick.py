@@ -50,9 +50,7 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
         measured: Float = measure(points, starts, lengths, regions.boxes, regions.cut, *size)
         return measured
 
-    skin = SkinLoops(
-        _of_writeable(found["red"]), _of_writeable(found["redness"]), found["counts"], found["look_up"]
-    )
+    skin = SkinLoops(_of_writeable(found["red"]), _of_writeable(found["redness"]), found["stretch"])
     in_cells = CellLoops(_of_writeable(found["sums"]), found["cells"], shapes)
     whole = partial(_whole, found["nodes"], found["distinct"], found["outlines"])
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])

@@ -53,7 +53,8 @@ def shapes(
     shorter = min(across, down)
     for index in range(len(boxes)):
         left, top, width, rows = boxes[index, 0], boxes[index, 1], boxes[index, 2], boxes[index, 3]
-        low[:rows], high[:rows] = left + width, left
+        for row in range(rows):
+            low[row], high[row] = left + width, left
         first, end = starts[index], starts[index] + lengths[index]
         x, y = np.int64(points[end - 1, 0]), np.int64(points[end - 1, 1])
         twice: Array = 0

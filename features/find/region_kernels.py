@@ -20,6 +20,9 @@ HIGH_BITS: Final = np.uint64(0x8080808080808080)
 PLACES: Final = np.uint64(0x0001020304050607)
 """Times a byte's lowest bit this has the byte's place in the topmost byte."""
 ZERO, ONE, SEVEN, EIGHT, TOP = (np.uint64(number) for number in (0, 1, 7, 8, 56))
+ACROSS: Final = np.array((1, 1, 0, -1, -1, -1, 0, 1) * 2, np.int64)
+DOWN: Final = np.array((0, -1, -1, -1, 0, 1, 1, 1) * 2, np.int64)
+"""Steps to the neighbours from the right counter-clockwise, twice, so that a search need not begin again."""
 UNSEEN: Final = 255
 """Pixel of a mask that no outline has passed yet."""
 SMALL: Final = 512
@@ -144,14 +147,11 @@ def join_runs(
 def follow(pixels: Array, start_x: int, start_y: int, level: int, points: Array, place: int) -> int:
     """Write the outline of the region whose first pixel is given from `place` on; the place after it, -1 where
     `points`, int32 (m, 2), is too short. It begins there, goes down the left side and is in pixels inside the rim."""
-    # From the right counter-clockwise, twice, so that a search need not begin again.
-    across = (1, 1, 0, -1, -1, -1, 0, 1, 1, 1, 0, -1, -1, -1, 0, 1)
-    down = (0, -1, -1, -1, 0, 1, 1, 1, 0, -1, -1, -1, 0, 1, 1, 1)
     # Nothing stands above the first pixel or left of it: clockwise from there, what comes first ends the outline.
     towards = 8
-    while towards > 4 and pixels[start_y + down[towards], start_x + across[towards]] < level:
+    while towards > 4 and pixels[start_y + DOWN[towards], start_x + ACROSS[towards]] < level:
         towards -= 1
-    last_x, last_y = start_x + across[towards], start_y + down[towards]
+    last_x, last_y = start_x + ACROSS[towards], start_y + DOWN[towards]
     is_alone = towards == 4
     x, y = start_x, start_y
     towards &= 7
@@ -163,9 +163,9 @@ def follow(pixels: Array, start_x: int, start_y: int, level: int, points: Array,
         if is_alone:
             return place
         towards += 1
-        while pixels[y + down[towards], x + across[towards]] < level:
+        while pixels[y + DOWN[towards], x + ACROSS[towards]] < level:
             towards += 1
-        next_x, next_y = x + across[towards], y + down[towards]
+        next_x, next_y = x + ACROSS[towards], y + DOWN[towards]
         if next_x == start_x and next_y == start_y and x == last_x and y == last_y:
             return place
         x, y, towards = next_x, next_y, (towards + 4) & 7
@@ -265,7 +265,8 @@ def outlines(pixels: Array, chosen: Array) -> tuple[Array, Array]:
         place = follow(pixels, x, y, level, points, starts[index])
         while place < 0:
             more = np.empty((2 * len(points), 2), np.int32)
-            more[: starts[index]] = points[: starts[index]]
+            for point in range(starts[index]):
+                more[point, 0], more[point, 1] = points[point, 0], points[point, 1]
             points = more
             place = follow(pixels, x, y, level, points, starts[index])
         starts[index + 1] = place

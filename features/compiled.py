@@ -5,6 +5,7 @@ of a version that does not serve, or has no folder to keep them in, the plain lo
 answers; of all but the first of these one line is told through `logging`.
 """
 
+import hashlib
 import logging
 import os
 import tempfile
@@ -20,6 +21,8 @@ from lightgesture.features.find.quick import joined
 
 SWITCHED_OFF: Final = "LIGHTGESTURE_PLAIN"
 """Environment variable: any text in it keeps numba out."""
+NUMBERS_FROM: Final = ("find/cells.py", "find/forearms.py", "find/proposals.py", "skin_map.py")
+"""Modules whose numbers are compiled into the loops."""
 SIGNATURES: Final = {
     "skin_kernels": {
         "red": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], i8)",
@@ -32,6 +35,7 @@ SIGNATURES: Final = {
         "distinct": "i8[::1](i4[:,::1], i8)",
         "walk": "i8[::1](u4[::1], u2[::1], f4[::1], u4[::1], i4[::1], i8, f4[:,::1])",
     },
+    "run_kernels": {},
     "region_kernels": {
         "nodes": "i4[:,::1](u1[:,::1], u8[:,::1], i8, f8[::1], i8, i8, i8)",
         "largest_parts": "Tuple((i4[:,::1], i4[:,::1]))(u1[:,::1], i8[:,::1], i4[:,::1], b1[::1], i8)",
@@ -98,6 +102,8 @@ def compiled_loops(numba: ModuleType, folder: Path) -> Loops:
     if numba.config.DISABLE_JIT:
         raise RuntimeError("NUMBA_DISABLE_JIT is set")
     kept = numba.config.CACHE_DIR
+    # Numba looks whether a loop's own file has changed, and not at what it takes from others.
+    folder = folder / version_of_loops()
     if not kept:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -112,6 +118,15 @@ def compiled_loops(numba: ModuleType, folder: Path) -> Loops:
     finally:
         numba.config.CACHE_DIR = kept
     return joined(found)
+
+
+def version_of_loops() -> str:
+    """Tells one version of the loops and their numbers from another."""
+    digest = hashlib.sha256()
+    features = Path(__file__).parent
+    for path in (*sorted(features.glob("find/*kernels.py")), *(features / name for name in NUMBERS_FROM)):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 def _compiled(

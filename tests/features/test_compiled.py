@@ -5,6 +5,7 @@ import logging
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import cv2
@@ -14,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightgesture.actions.decode import SAMPLE
+from lightgesture.benchmarks.bad_frames import SCENES
 from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find import cells, proposals
@@ -142,6 +144,27 @@ def test_frames_of_a_clip_give_the_same_candidates(fast):
     assert found > 10
 
 
+def test_the_worst_frames_give_the_same_candidates(fast):
+    parts = load_classical()
+    plain, quick = ClassicalSelector(parts), ClassicalSelector(parts, fast)
+    clip = [_textured(seed, 480, 640, 0.8) for seed in (5, 6)]
+    for scene in SCENES.values():
+        for image in scene(clip):
+            colour = ColourStage().process(image)
+            _assert_same_candidates(plain.process(colour), quick.process(colour))
+
+
+@pytest.mark.parametrize("is_fast", [False, True])
+def test_threads_and_sizes_do_not_share_what_is_kept_of_a_frame(fast, is_fast):
+    selector = ClassicalSelector(load_classical(), fast if is_fast else None)
+    sizes = (120, 160), (90, 200), (160, 120), (120, 160)
+    colours = [ColourStage().process(_textured(seed, *sizes[seed % 4], 1.0)) for seed in range(12)]
+    alone = [ClassicalSelector(load_classical(), fast if is_fast else None).process(one) for one in colours]
+    with ThreadPoolExecutor(4) as pool:
+        for one, other in zip(alone, pool.map(selector.process, colours), strict=True):
+            _assert_same_candidates(one, other)
+
+
 def test_read_only_frames_and_views_are_taken(fast):
     picture = _textured(3, 100, 140, 1.0)
     whole = ClassicalSelector(load_classical(), fast)
@@ -216,6 +239,20 @@ def test_the_cache_lies_in_the_users_folder(monkeypatch, tmp_path):
     assert compiled.cache_folder() == tmp_path / "lightgesture" / "numba"
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")
     assert compiled.cache_folder().is_absolute()
+
+
+def test_loops_with_other_numbers_are_compiled_anew(monkeypatch, tmp_path):
+    """Numba itself sees only whether the file of a loop has changed."""
+    for name in ("find/kernels.py", "find/other_kernels.py", "skin_map.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("MOST = 96")
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    monkeypatch.setattr(compiled, "NUMBERS_FROM", ("skin_map.py",))
+    versions = [compiled.version_of_loops()]
+    for name in ("find/other_kernels.py", "skin_map.py"):
+        (tmp_path / name).write_text("MOST = 95")
+        versions.append(compiled.version_of_loops())
+    assert len(set(versions)) == 3
 
 
 def test_the_learned_choice_loads_no_numba():

@@ -21,7 +21,13 @@ from lightgesture.features.find.quick import joined
 
 SWITCHED_OFF: Final = "LIGHTGESTURE_PLAIN"
 """Environment variable: any text in it keeps numba out."""
-NUMBERS_FROM: Final = ("find/cells.py", "find/forearms.py", "find/proposals.py", "skin_map.py")
+NUMBERS_FROM: Final = (
+    "find/candidates.py",
+    "find/cells.py",
+    "find/forearms.py",
+    "find/proposals.py",
+    "skin_map.py",
+)
 """Modules whose numbers are compiled into the loops."""
 SIGNATURES: Final = {
     "skin_kernels": {
@@ -40,6 +46,10 @@ SIGNATURES: Final = {
         "nodes": "i4[:,::1](u1[:,::1], u8[:,::1], i8, f8[::1], i8, i8, i8)",
         "largest_parts": "Tuple((i4[:,::1], i4[:,::1]))(u1[:,::1], i8[:,::1], i4[:,::1], b1[::1], i8)",
         "outlines": "Tuple((i4[:,::1], i8[::1]))(u1[:,::1], i4[:,::1])",
+    },
+    "pair_kernels": {
+        "ratios": "f8[:,::1](f8[:,::1], f8[:,::1], i8)",
+        "pair_rows": "f4[:,::1](f8[:,::1], f8[:,::1], f8[:,::1], f8[:,::1], i8, i8)",
     },
     "outline_kernels": {
         "shapes": "f4[:,::1](i4[:,::1], i8[::1], i8[::1], i4[:,::1], b1[::1], i8, i8)",

@@ -26,6 +26,8 @@ Rows = NDArray[np.float64]
 strength, how clearly it stands out (the level of its threshold or the heat of its peak; only the difference between two
 counts); mean blue, green and red inside, 0 to 1."""
 Point = tuple[float, float]
+Numbers = Callable[[Rows, Rows, tuple[int, int], Point | None], Float]
+"""See `numbers_of`."""
 
 PLACE_COLUMNS: Final = 14
 """Numbers of one place."""
@@ -103,13 +105,18 @@ def candidate_rows(
 
 
 def pair_numbers(
-    candidates: Rows, size: tuple[int, int], face: Point | None, overlap: NDArray[np.float64] | None = None
+    candidates: Rows,
+    size: tuple[int, int],
+    face: Point | None,
+    overlap: NDArray[np.float64] | None = None,
+    numbers: Numbers | None = None,
 ) -> tuple[NDArray[np.intp], Float]:
     """All pairs of candidates that overlap at most `APART_IOU`, intp (pairs, 2), and their numbers, float32 (pairs,
     PAIR_COLUMNS).
 
     A pair has the same numbers whichever of the two comes first. size: (width, height) of the working picture. face:
     centre of the likeliest face, None where none is seen. overlap: float64 (n, n), IoU of every two where it is known.
+    numbers: None for `numbers_of`.
     """
     if overlap is None:
         overlap = pairwise_iou(candidates[:, :4], candidates[:, :4])
@@ -120,7 +127,8 @@ def pair_numbers(
     middles = candidates[:, 0] + candidates[:, 2] / 2
     is_swapped = middles.take(pairs[:, 0]) > middles.take(pairs[:, 1])
     left, right = np.where(is_swapped, pairs.T[::-1], pairs.T)
-    return pairs, _numbers_of(candidates.take(left, axis=0), candidates.take(right, axis=0), size, face)
+    told = numbers or numbers_of
+    return pairs, told(candidates.take(left, axis=0), candidates.take(right, axis=0), size, face)
 
 
 @lru_cache(maxsize=MOST + 1)
@@ -129,7 +137,7 @@ def _every_two(count: int) -> NDArray[np.intp]:
     return np.array(list(combinations(range(count), 2)), np.intp).reshape(-1, 2)
 
 
-def _numbers_of(a: Rows, b: Rows, size: tuple[int, int], face: Point | None) -> Float:
+def numbers_of(a: Rows, b: Rows, size: tuple[int, int], face: Point | None) -> Float:
     """float32 (n, PAIR_COLUMNS) of n pairs, `a` being the left ones."""
     sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
     unit = np.sqrt(sides_a * sides_b)
@@ -169,10 +177,11 @@ def scored_pairs(
     size: tuple[int, int],
     face: Point | None,
     overlap: NDArray[np.float64] | None = None,
+    numbers: Numbers | None = None,
 ) -> Float:
     """`score_pairs` by whatever scores rows of `pair_numbers`, float32 (pairs, PAIR_COLUMNS) -> (pairs,)."""
     together = np.zeros((len(candidates), len(candidates)), np.float32)
-    pairs, rows = pair_numbers(candidates, size, face, overlap)
+    pairs, rows = pair_numbers(candidates, size, face, overlap, numbers)
     if len(pairs):
         together[pairs[:, 0], pairs[:, 1]] = score(rows).clip(0.0, 1.0)
     return np.maximum(together, together.T)

@@ -23,7 +23,14 @@ from lightgesture.features.find.bank import (
     hand_proximity,
     nearest_hand,
 )
-from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, scored_pairs
+from lightgesture.features.find.candidates import (
+    Numbers,
+    Rows,
+    best_distinct,
+    candidate_rows,
+    numbers_of,
+    scored_pairs,
+)
 from lightgesture.features.find.cells import PLAIN, CellLoops
 from lightgesture.features.find.proposals import (
     LEVELS,
@@ -61,6 +68,7 @@ class Loops:
     cells: CellLoops = PLAIN
     regions: RegionLoops = PLAIN_REGIONS
     walk: Walk = plain_walk
+    pairs: Numbers = numbers_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,7 +213,8 @@ class ClassicalSelector:
             items,
             scene.size,
             None,
-            overlap[np.ix_(kept, kept)],
+            overlap[kept][:, kept],
+            self._loops.pairs,
         )
         regions = _regions(colour, proposals, scores, kept, other_extents(overlap, scores, kept))
         return Candidates(tuple(regions), together, colour.source_size)

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.find.candidates import Point, Rows, numbers_of
 from lightgesture.features.find.cells import CellLoops
 from lightgesture.features.find.classical import Loops
 from lightgesture.features.find.forearms import LEAST_HEIGHT, direction_from, erase_forearm
@@ -56,7 +57,7 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
     colours = _of_writeable(partial(_mean_colours, found["masks"], found["colours"]))
     regions = RegionLoops(whole, found["distinct"], forearms, found["overlaps"], colours)
-    return Loops(skin, in_cells, regions, walk_trees)
+    return Loops(skin, in_cells, regions, walk_trees, partial(_numbers, found["ratios"], found["pair_rows"]))
 
 
 @lru_cache(maxsize=8)
@@ -148,6 +149,22 @@ def _discs() -> NDArray[np.int32]:
         canvas = np.zeros((size, 2 * size), np.uint8)
         cv2.circle(canvas, (size, 0), radius, 1, cv2.FILLED)
         found[radius] = (canvas.sum(axis=1, dtype=np.int32) + 1) // 2 - 1
+    return found
+
+
+def _numbers(
+    ratios: Callable[..., Any],
+    rows: Callable[..., Any],
+    left: Rows,
+    right: Rows,
+    size: tuple[int, int],
+    face: Point | None,
+) -> Float:
+    """`numbers_of` by compiled loops."""
+    if face is not None:
+        return numbers_of(left, right, size, face)
+    units = ratios(left, right, min(size))
+    found: Float = rows(left, right, units, np.log(units), *size)
     return found
 
 

@@ -19,6 +19,7 @@ from lightgesture.benchmarks.bad_frames import SCENES
 from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
 from lightgesture.features.find import cells, proposals
+from lightgesture.features.find.candidates import pair_numbers
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
 from lightgesture.features.find.proposals import plain_distinct, whole_regions, without_forearms
 from lightgesture.features.find.selector_file import load_classical
@@ -152,6 +153,27 @@ def test_the_worst_frames_give_the_same_candidates(fast):
         for image in scene(clip):
             colour = ColourStage().process(image)
             _assert_same_candidates(plain.process(colour), quick.process(colour))
+
+
+@given(
+    rows=st.lists(
+        st.tuples(
+            *[st.integers(0, 150)] * 2,
+            *[st.integers(1, 110)] * 2,
+            *[st.floats(0.0, 1.0, width=32)] * 5,
+        ),
+        min_size=2,
+        max_size=8,
+    ),
+    face=st.sampled_from([None, (70.0, 40.0)]),
+)
+@settings(max_examples=100, deadline=None)
+def test_any_pairs_have_the_same_numbers(fast, rows, face):
+    table = np.array(rows, np.float64)
+    pairs, numbers = pair_numbers(table, (160, 120), face)
+    same, others = pair_numbers(table, (160, 120), face, numbers=fast.pairs)
+    assert same.tobytes() == pairs.tobytes()
+    assert others.tobytes() == numbers.tobytes()
 
 
 @pytest.mark.parametrize("is_fast", [False, True])

@@ -11,7 +11,7 @@ frequencies are its coarse shape. Place and size are divided out. Orientation is
 fingers above: with it, hands are told from other things much better than without.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
@@ -79,6 +79,22 @@ class Bank:
             raise ValueError("a class has no centre, or a centre no class")
 
 
+@dataclass(frozen=True, slots=True)
+class BankLoops:
+    """The passes over outlines.
+
+    sampled: (points, starts, lengths, count) -> float32 (n, 2 count), so many points of each outline, x and then y from
+        their middle; int64 (n,), the first of the highest of them.
+    turned: (coefficients, start, shifts) -> float32 (n, 4 harmonics): Fourier coefficients, real parts and then
+        imaginary ones, of outlines that begin at another of their points. shifts: of `_transform`.
+    """
+
+    sampled: Callable[
+        [NDArray[np.int32], NDArray[np.int64], NDArray[np.int64], int], tuple[Float, NDArray[np.int64]]
+    ]
+    turned: Callable[[Float, NDArray[np.int64], Float], Float]
+
+
 def bank_distances(contours: Sequence[Contour], bank: Bank) -> Float:
     """Distance of each outline to the nearest centre of each class, float32 (n, classes), at least 0.
 
@@ -143,22 +159,39 @@ def describe_points(
     starts: NDArray[np.int64],
     lengths: NDArray[np.int64],
     settings: DescriptorSettings,
+    loops: BankLoops | None = None,
 ) -> Float:
     """`describe_outlines` of outlines in one array, int32 (m, 2). starts, lengths: int64 (n,), where each begins and
     how many points it has."""
-    # Evenly spaced among its own.
-    chosen = starts[:, None] + lengths[:, None] * np.arange(settings.points) // settings.points
-    x, y = points[:, 0].take(chosen).astype(np.float32), points[:, 1].take(chosen).astype(np.float32)
-    count = np.float32(settings.points)
-    x -= x.sum(axis=1, keepdims=True) / count
-    y -= y.sum(axis=1, keepdims=True) / count
-    spread = np.sqrt((np.square(x) + np.square(y)).sum(axis=1, keepdims=True) / count)
-    start = y.argmin(axis=1)
+    loops = loops or PLAIN
+    sampled, start = loops.sampled(points, starts, lengths, settings.points)
+    squares = np.square(sampled)
+    x, y = squares[:, : settings.points], squares[:, settings.points :]
+    spread = np.sqrt((x + y).sum(axis=1, keepdims=True) / np.float32(settings.points))
     transform, shifts = _transform(settings)
-    coefficients = (np.concatenate([x, y], axis=1) / np.maximum(spread, SMALLEST_SPREAD)) @ transform
-    real, imaginary = coefficients[:, : 2 * settings.harmonics], coefficients[:, 2 * settings.harmonics :]
+    return loops.turned((sampled / np.maximum(spread, SMALLEST_SPREAD)) @ transform, start, shifts)
+
+
+def _plain_sampled(
+    points: NDArray[np.int32], starts: NDArray[np.int64], lengths: NDArray[np.int64], count: int
+) -> tuple[Float, NDArray[np.int64]]:
+    # Evenly spaced among its own.
+    chosen = starts[:, None] + lengths[:, None] * np.arange(count) // count
+    sampled = np.empty((len(starts), 2 * count), np.float32)
+    for axis, half in enumerate((sampled[:, :count], sampled[:, count:])):
+        half[:] = points[:, axis].take(chosen)
+        half -= half.sum(axis=1, keepdims=True) / np.float32(count)
+    return sampled, sampled[:, count:].argmin(axis=1)
+
+
+def _plain_turned(coefficients: Float, start: NDArray[np.int64], shifts: Float) -> Float:
+    half = coefficients.shape[1] // 2
+    real, imaginary = coefficients[:, :half], coefficients[:, half:]
     cosine, sine = shifts[0][start], shifts[1][start]
     return np.concatenate([real * cosine - imaginary * sine, real * sine + imaginary * cosine], axis=1)
+
+
+PLAIN: Final = BankLoops(_plain_sampled, _plain_turned)
 
 
 @lru_cache(maxsize=4)

@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
+from lightgesture.features.find.bank import PLAIN as PLAIN_BANK
 from lightgesture.features.find.bank import (
     Bank,
+    BankLoops,
     describe_points,
     distances_from,
     hand_proximity,
@@ -69,6 +71,7 @@ class Loops:
     regions: RegionLoops = PLAIN_REGIONS
     walk: Walk = plain_walk
     pairs: Numbers = numbers_of
+    bank: BankLoops = PLAIN_BANK
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +108,7 @@ class Scorer:
         seen, rows = standing_out(
             scene, whole, rows, self._glance.scores(rows, self._loops.walk), self._loops
         )
-        numbers = with_bank(rows, seen, self._bank)
+        numbers = with_bank(rows, seen, self._bank, self._loops.bank)
         return seen, self._regions.scores(numbers, self._loops.walk)
 
 
@@ -120,12 +123,12 @@ def standing_out(
     return chosen.joined(hands), np.concatenate([rows[best], more])
 
 
-def with_bank(rows: Float, regions: Proposals, bank: Bank) -> Float:
+def with_bank(rows: Float, regions: Proposals, bank: Bank, loops: BankLoops | None = None) -> Float:
     """float32 (n, COLUMNS): rows of `cells.describe`, then how near the outline is to the bank's hands, and how much
     nearer than to other things."""
     if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
-    described = describe_points(regions.points, regions.starts, regions.lengths, bank.settings)
+    described = describe_points(regions.points, regions.starts, regions.lengths, bank.settings, loops)
     distances = distances_from(described, bank)
     found = np.empty((len(regions), COLUMNS), np.float32)
     found[:, :-BANK_NUMBERS] = rows

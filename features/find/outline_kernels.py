@@ -200,3 +200,39 @@ def overlaps(boxes: Array) -> Array:
             found[one, other] = both / max(np.float64(union), 1e-9)
             found[other, one] = found[one, other]
     return found
+
+
+def sampled(points: Array, starts: Array, lengths: Array, count: int) -> tuple[Array, Array]:
+    """See `bank.BankLoops`."""
+    found = np.empty((len(starts), 2 * count), np.float32)
+    highest = np.zeros(len(starts), np.int64)
+    for index in range(len(starts)):
+        total_x: Array = 0
+        total_y: Array = 0
+        top = points[starts[index], 1]
+        for place in range(count):
+            point = starts[index] + lengths[index] * place // count
+            total_x += points[point, 0]
+            total_y += points[point, 1]
+            if points[point, 1] < top:
+                top, highest[index] = points[point, 1], place
+            found[index, place], found[index, count + place] = points[point, 0], points[point, 1]
+        middle_x = np.float32(total_x) / np.float32(count)
+        middle_y = np.float32(total_y) / np.float32(count)
+        for place in range(count):
+            found[index, place] -= middle_x
+            found[index, count + place] -= middle_y
+    return found, highest
+
+
+def turned(coefficients: Array, start: Array, shifts: Array) -> Array:
+    """See `bank.BankLoops`."""
+    count, half = len(coefficients), coefficients.shape[1] // 2
+    found = np.empty((count, 2 * half), np.float32)
+    for index in range(count):
+        for place in range(half):
+            real, imaginary = coefficients[index, place], coefficients[index, half + place]
+            cosine, sine = shifts[0, start[index], place], shifts[1, start[index], place]
+            found[index, place] = real * cosine - imaginary * sine
+            found[index, half + place] = real * sine + imaginary * cosine
+    return found

@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lightgesture.features.find.bank import BankLoops
 from lightgesture.features.find.candidates import Point, Rows, numbers_of
 from lightgesture.features.find.cells import CellLoops
 from lightgesture.features.find.classical import Loops
@@ -57,7 +58,8 @@ def joined(found: Mapping[str, Callable[..., Any]]) -> Loops:
     forearms = partial(_without_forearms, found["masks"], found["arms"], found["largest_parts"])
     colours = _of_writeable(partial(_mean_colours, found["masks"], found["colours"]))
     regions = RegionLoops(whole, found["distinct"], forearms, found["overlaps"], colours)
-    return Loops(skin, in_cells, regions, walk_trees, partial(_numbers, found["ratios"], found["pair_rows"]))
+    pairs = partial(_numbers, found["ratios"], found["pair_rows"])
+    return Loops(skin, in_cells, regions, walk_trees, pairs, BankLoops(found["sampled"], found["turned"]))
 
 
 @lru_cache(maxsize=8)

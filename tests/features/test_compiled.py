@@ -18,7 +18,7 @@ from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.bad_frames import SCENES
 from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find import cells, proposals
+from lightgesture.features.find import bank, cells, proposals
 from lightgesture.features.find.candidates import pair_numbers
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
 from lightgesture.features.find.proposals import plain_distinct, whole_regions, without_forearms
@@ -100,6 +100,14 @@ def test_any_map_has_the_same_regions_within_regions(fast, seed, height, width, 
     size = width, height
     assert fast.cells.shapes(every, size).tobytes() == cells.PLAIN.shapes(every, size).tobytes()
     assert fast.regions.overlaps(every.boxes).tobytes() == proposals.PLAIN.overlaps(every.boxes).tobytes()
+    if len(every):
+        parts = (
+            every.points,
+            every.starts,
+            every.lengths,
+            bank.DescriptorSettings(points=levels // 4 + 8, harmonics=3),
+        )
+        assert bank.describe_points(*parts, fast.bank).tobytes() == bank.describe_points(*parts).tobytes()
     picture = _textured(seed, height, width, 1.0)
     colours = proposals.PLAIN.colours(picture, every)
     assert fast.regions.colours(picture, every).tobytes() == colours.tobytes()

@@ -186,7 +186,7 @@ def fit_regions(
     for one in glance(pictures(), loops):
         scores = flat.scores(one.rows, loops.walk)
         seen, numbers = standing_out(one.scene, one.regions, one.rows, scores, loops)
-        rows.append(with_bank(numbers, seen, bank))
+        rows.append(with_bank(numbers, seen, bank, loops.bank))
         targets.append(overlaps_with(one.picture, one.colour, seen))
     return first, fit_trees(rows, targets, REGION_TREES, seed)
 

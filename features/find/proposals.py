@@ -77,7 +77,8 @@ class Proposals:
     @property
     def contours(self) -> tuple[Contour, ...]:
         """n arrays int32 (k, 2): the outlines."""
-        return tuple(self.contour(number) for number in range(len(self)))
+        starts, ends = self.starts.tolist(), (self.starts + self.lengths).tolist()
+        return tuple(self.points[start:end] for start, end in zip(starts, ends, strict=True))
 
     def contour(self, number: int) -> Contour:
         """One of the outlines, int32 (k, 2)."""

@@ -101,7 +101,10 @@ def candidate_rows(
     colours: Sequence[Float] | Float,
 ) -> Rows:
     """The rows of n candidates: boxes (n, 4), scores (n,), strengths (n,), n mean colours (3,); see `Rows`."""
-    return np.column_stack([boxes, scores, strengths, np.reshape(colours, (-1, 3))]).astype(np.float64)
+    rows = np.empty((len(boxes), 9), np.float64)
+    rows[:, :4], rows[:, 4], rows[:, 5] = boxes, scores, strengths
+    rows[:, 6:] = np.reshape(colours, (-1, 3))
+    return rows
 
 
 def pair_numbers(

@@ -102,16 +102,11 @@ def _erase_beyond(mask: Image, point: Point, direction: Point) -> None:
     """Set to 0 what lies past the line through `point` across `direction`."""
     (x, y), (along_x, along_y) = point, direction
     far = float(sum(mask.shape))
-    corners = np.array(
-        [
-            (round(x + far * step_x), round(y + far * step_y))
-            for step_x, step_y in (
-                (along_y, -along_x),
-                (-along_y, along_x),
-                (-along_y + along_x, along_x + along_y),
-                (along_y + along_x, -along_x + along_y),
-            )
-        ],
-        np.int32,
+    across_x, across_y = far * along_y, far * along_x
+    corners = (
+        (round(x + across_x), round(y - across_y)),
+        (round(x - across_x), round(y + across_y)),
+        (round(x + far * (-along_y + along_x)), round(y + far * (along_x + along_y))),
+        (round(x + far * (along_y + along_x)), round(y + far * (-along_x + along_y))),
     )
-    cv2.fillConvexPoly(mask, corners, 0)
+    cv2.fillConvexPoly(mask, np.array(corners, np.int32), 0)

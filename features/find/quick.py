@@ -1,5 +1,6 @@
 """Compiled loops put in the place of the plain ones: from what a stage has to flat arrays and back."""
 
+import sys
 from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 from typing import Any, Final
@@ -78,7 +79,8 @@ def _whole(
     nodes: Callable[..., Any], distinct: Distinct, outlines: Callable[..., Any], skin: Image, levels: int
 ) -> Proposals:
     """`RegionLoops.whole` by compiled loops."""
-    if levels > MOST_LEVELS:
+    # Eight pixels are looked at as one number, the first in its lowest byte.
+    if levels > MOST_LEVELS or sys.byteorder != "little":
         return plain_whole(skin, levels)
     height, width = skin.shape
     thresholds, reached = _thresholds(levels)

@@ -19,8 +19,6 @@ DOWN: Final = np.array((0, -1, -1, -1, 0, 1, 1, 1) * 2, np.int64)
 """Steps to the neighbours from the right counter-clockwise, twice, so that a search need not begin again."""
 UNSEEN: Final = 255
 """Pixel of a mask that no outline has passed yet."""
-SMALL: Final = 512
-"""Points of an outline that is followed only to be counted: of 8 × 8 pixels, each passed eight times at most."""
 
 
 def follow(pixels: Array, start_x: int, start_y: int, level: int, points: Array, place: int) -> int:
@@ -80,7 +78,8 @@ def nodes(
         np.empty(room, np.int32),
         np.empty((room, 6), np.int32),
     )
-    scratch = np.empty((SMALL, 2), np.int32)
+    # Of an outline that is followed only to be counted: it passes a pixel once for each of its four sides at most.
+    scratch = np.empty((4 * (shortest // 2 + 1) ** 2, 2), np.int32)
     found = np.empty((most, 7), np.int32)
     highest = np.zeros(height, np.int64)
     for y in range(height):

@@ -5,37 +5,64 @@ of a version that does not serve, or has no folder to keep them in, the plain lo
 answers; of all but the first of these one line is told through `logging`.
 """
 
+import hashlib
 import logging
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
-import numpy as np
-from numpy.typing import NDArray
-
-from lightgesture.features.find.cells import CellLoops
 from lightgesture.features.find.classical import Loops
-from lightgesture.features.find.trees import FlatTrees
-from lightgesture.features.skin_map import SkinLoops
+from lightgesture.features.find.quick import joined
 
 SWITCHED_OFF: Final = "LIGHTGESTURE_PLAIN"
 """Environment variable: any text in it keeps numba out."""
+NUMBERS_FROM: Final = (
+    "find/candidates.py",
+    "find/cells.py",
+    "find/forearms.py",
+    "find/proposals.py",
+    "skin_map.py",
+)
+"""Modules whose numbers are compiled into the loops."""
 SIGNATURES: Final = {
-    "red": "u2[:,::1](u1[:,:,::1], i8)",
-    "redness": "u2[:,::1](u1[:,:,::1], u2[:,::1], i8, f4[::1], f4[::1], f4[::1])",
-    "counts": "i8[::1](u2[:,::1], i8, i8, i8)",
-    "look_up": "u1[:,::1](u2[:,::1], i8, i8, u1[::1])",
-    "sums": "i4[:,:,::1](u1[:,::1], u1[:,::1], i2[:,::1], i2[:,::1])",
-    "cells": "f4[:,::1](i4[:,:,::1], i4[:,::1])",
-    "distinct": "i8[::1](i4[:,::1], i8)",
-    "walk": "i8[::1](i8[::1], i8[::1], f4[::1], i8[::1], i4[::1], i8, f4[:,::1])",
+    "skin_kernels": {
+        "red": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], i8)",
+        "redness": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], u2[:,::1], i8, f8[::1])",
+        "stretch": "u1[:,::1](u2[:,::1], i8, i8)",
+    },
+    "kernels": {
+        "sums": "void(u1[:,::1], u1[:,::1], i4[:,:,::1])",
+        "cells": "f4[:,::1](i4[:,:,::1], i4[:,::1])",
+        "distinct": "i8[::1](i4[:,::1], i8)",
+        "walk": "i8[::1](u4[::1], u2[::1], f4[::1], u4[::1], i4[::1], i8, f4[:,::1])",
+    },
+    "run_kernels": {},
+    "region_kernels": {
+        "nodes": "i4[:,::1](u1[:,::1], u8[:,::1], i8, f8[::1], i8, i8, i8)",
+        "largest_parts": "Tuple((i4[:,::1], i4[:,::1]))(u1[:,::1], i8[:,::1], i4[:,::1], b1[::1], i8)",
+        "outlines": "Tuple((i4[:,::1], i8[::1]))(u1[:,::1], i4[:,::1])",
+    },
+    "pair_kernels": {
+        "ratios": "f8[:,::1](f8[:,::1], f8[:,::1], i8)",
+        "pair_rows": "f4[:,::1](f8[:,::1], f8[:,::1], f8[:,::1], f8[:,::1], i8, i8)",
+    },
+    "outline_kernels": {
+        "shapes": "f4[:,::1](i4[:,::1], i8[::1], i8[::1], i4[:,::1], b1[::1], i8, i8)",
+        "colours": "f8[:,::1](u1[:,:,::1], u1[:,::1], i8[:,::1], i4[:,::1])",
+        "overlaps": "f8[:,::1](i4[:,::1])",
+        "sampled": "Tuple((f4[:,::1], i8[::1]))(i4[:,::1], i8[::1], i8[::1], i8)",
+        "turned": "f4[:,::1](f4[:,::1], i8[::1], f4[:,:,::1])",
+        "masks": "Tuple((u1[:,::1], i8[:,::1]))(i4[:,::1], i8[::1], i8[::1], i4[:,::1])",
+        "arms": "f8[:,::1](u1[:,::1], i8[:,::1], i4[:,::1], f4[:,::1], i4[:,::1])",
+    },
 }
-"""Types of what each loop of `find/kernels.py` gives and takes, in numba's notation, so that none is compiled in the
-middle of a stream."""
+"""Types of what each loop of the modules in `find/` gives and takes, in numba's notation, so that none is compiled in
+the middle of a stream."""
 
 
 @lru_cache(maxsize=1)
@@ -84,11 +111,11 @@ def compiled_loops(numba: ModuleType, folder: Path) -> Loops:
     Raises OSError where the folder cannot be written: without it a program would compile at every start. Raises
     whatever numba does.
     """
-    from lightgesture.features.find import kernels
-
     if numba.config.DISABLE_JIT:
         raise RuntimeError("NUMBA_DISABLE_JIT is set")
     kept = numba.config.CACHE_DIR
+    # Numba looks whether a loop's own file has changed, and not at what it takes from others.
+    folder = folder / version_of_loops()
     if not kept:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
@@ -96,39 +123,32 @@ def compiled_loops(numba: ModuleType, folder: Path) -> Loops:
     numba.config.CACHE_DIR = kept or str(folder)
     try:
         found = {
-            name: numba.njit(types, cache=True, error_model="numpy")(getattr(kernels, name))
-            for name, types in SIGNATURES.items()
+            name: loop
+            for module, types in SIGNATURES.items()
+            for name, loop in _compiled(numba, module, types)
         }
     finally:
         numba.config.CACHE_DIR = kept
-    return _joined(found)
+    return joined(found)
 
 
-def _joined(found: dict[str, Callable[..., Any]]) -> Loops:
-    walk = found["walk"]
-
-    def walk_trees(trees: FlatTrees, rows: NDArray[np.float32]) -> NDArray[np.int64]:
-        total: NDArray[np.int64] = walk(
-            trees.roots, trees.feature, trees.threshold, trees.children, trees.leaf, trees.depth, rows
-        )
-        return total
-
-    skin = SkinLoops(
-        _of_writeable(found["red"]), _of_writeable(found["redness"]), found["counts"], found["look_up"]
-    )
-    return Loops(skin, CellLoops(_of_writeable(found["sums"]), found["cells"]), found["distinct"], walk_trees)
+def version_of_loops() -> str:
+    """Tells one version of the loops and their numbers from another."""
+    digest = hashlib.sha256()
+    features = Path(__file__).parent
+    for path in (*sorted(features.glob("find/*kernels.py")), *(features / name for name in NUMBERS_FROM)):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
 
 
-def _of_writeable(loop: Callable[..., Any]) -> Callable[..., Any]:
-    """The loop, also for pictures that a camera or a profile gives as read-only or as a view, for which nothing was
-    compiled."""
-
-    def called(*arrays: Any) -> Any:
-        return loop(*(_own(one) if isinstance(one, np.ndarray) else one for one in arrays))
-
-    return called
-
-
-def _own(array: NDArray[Any]) -> NDArray[Any]:
-    flags = array.flags
-    return array if flags.c_contiguous and flags.writeable else array.copy()
+def _compiled(
+    numba: ModuleType, name: str, signatures: Mapping[str, str]
+) -> Iterator[tuple[str, Callable[..., Any]]]:
+    """The loops of a module of `find/`, by their names."""
+    module = import_module(f"lightgesture.features.find.{name}")
+    for helper in module.HELPERS:
+        # A compiled loop calls what its module has under a name, which must be compiled too; Python can call it still.
+        plain = getattr(getattr(module, helper), "py_func", getattr(module, helper))
+        setattr(module, helper, numba.njit(error_model="numpy")(plain))
+    for loop, types in signatures.items():
+        yield loop, numba.njit(types, cache=True, error_model="numpy")(getattr(module, loop))

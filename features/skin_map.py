@@ -94,18 +94,18 @@ class SkinLoops:
     """The passes over the pixels of a picture, uint8 (h, w, 3), BGR.
 
     red: (picture, share) -> uint16 (h, w), the compensated red in steps of 1 / FINE: red + share (255 - red) green
-        / 2^SHARE_BITS.
-    redness: (picture, red, shift, blue table, green table, red table) -> uint16 (h, w): what the three tables, float32
-        and whole numbers, add up to at a pixel's blue, green and red / 2^shift, blurred by 1-2-1 along x and y.
-    counts: (values, lowest, highest, shift) -> int64 (bins,): how many of uint16 (h, w) lie in each bin, whose number
-        is (value - lowest) / 2^shift.
-    look_up: (values, lowest, shift, levels) -> uint8 (h, w): of each value what levels, uint8 (bins,), has for its bin.
+        / 2^SHARE_BITS; its sum; its largest.
+    redness: (picture, red, shift, factors) -> uint16 (h, w): what `power_table` has for a pixel's blue, green and red /
+        2^shift, added up and blurred by 1-2-1 along x and y; its least and its largest.
+    stretch: (values, lowest, highest) -> uint8 (h, w): see `stretch`, of a redness in units of 1 / UNIT, with the
+        percentiles from a histogram of BINS bins at most.
     """
 
-    red: Callable[[Image, int], NDArray[np.uint16]]
-    redness: Callable[[Image, NDArray[np.uint16], int, Float, Float, Float], NDArray[np.uint16]]
-    counts: Callable[[NDArray[np.uint16], int, int, int], NDArray[np.int64]]
-    look_up: Callable[[NDArray[np.uint16], int, int, NDArray[np.uint8]], Image]
+    red: Callable[[Image, int], tuple[NDArray[np.uint16], int, int]]
+    redness: Callable[
+        [Image, NDArray[np.uint16], int, NDArray[np.float64]], tuple[NDArray[np.uint16], int, int]
+    ]
+    stretch: Callable[[NDArray[np.uint16], int, int], Image]
 
 
 def skin_map(picture: Image, loops: SkinLoops | None = None) -> Image:
@@ -117,71 +117,53 @@ def skin_map(picture: Image, loops: SkinLoops | None = None) -> Image:
     pixels = picture.shape[0] * picture.shape[1]
     blue, green, red = (total / (255.0 * pixels) for total in cv2.sumElems(picture)[:3])
     share = RED_COMPENSATION * max(green - red, 0.0)
-    compensated = loops.red(picture, round(share * FINE / 255.0 * (1 << SHARE_BITS)))
-    light = np.array([blue, green, int(compensated.sum()) / (FINE * 255.0 * pixels)])
-    gains = light.mean() / np.maximum(light, DARKEST_LIGHT)
-    shift = max(int(compensated.max()).bit_length() - (RED_ENTRIES - 1).bit_length(), 0)
-    blurred = loops.redness(picture, compensated, shift, *_power_tables(gains, shift))
-    return _fast_stretch(blurred, loops)
+    compensated, total, largest = loops.red(picture, round(share * FINE / 255.0 * (1 << SHARE_BITS)))
+    light = blue, green, total / (FINE * 255.0 * pixels)
+    shift = max(largest.bit_length() - (RED_ENTRIES - 1).bit_length(), 0)
+    # Balancing scales a channel and the power follows it, so that every table is the same one, scaled and clipped.
+    mean = (light[0] + light[1] + light[2]) / 3.0
+    steps = 255.0, 255.0, 255.0 * FINE / (1 << shift)
+    factors = [
+        (mean / max(one, DARKEST_LIGHT) / step) ** EXPONENT for one, step in zip(light, steps, strict=True)
+    ]
+    return loops.stretch(*loops.redness(picture, compensated, shift, np.array(factors)))
 
 
-def _plain_red(picture: Image, share: int) -> NDArray[np.uint16]:
+def power_table(channel: int, factor: float, entries: int) -> Float:
+    """What each value of a channel adds to the redness, float32 (entries,) with whole numbers."""
+    return (np.rint(np.minimum(POWERS[:entries] * factor, 1.0) * WEIGHTS[channel]) + OFFSETS[channel]).astype(
+        np.float32
+    )
+
+
+def _plain_red(picture: Image, share: int) -> tuple[NDArray[np.uint16], int, int]:
     _, green, red = cv2.split(picture)
     given_back = np.multiply(cv2.bitwise_not(red), green, dtype=np.int32)
     given_back *= share
     given_back >>= SHARE_BITS
     given_back += np.multiply(red, FINE, dtype=np.int32)
-    return given_back.astype(np.uint16)
+    return given_back.astype(np.uint16), int(given_back.sum(dtype=np.int64)), int(given_back.max())
 
 
 def _plain_redness(
-    picture: Image, red: NDArray[np.uint16], shift: int, blues: Float, greens: Float, reds: Float
-) -> NDArray[np.uint16]:
+    picture: Image, red: NDArray[np.uint16], shift: int, factors: NDArray[np.float64]
+) -> tuple[NDArray[np.uint16], int, int]:
     # Single precision holds these whole numbers and the sixteenths that the blur makes of them exactly.
     blue, green, _ = cv2.split(picture)
+    entries = 256, 256, RED_ENTRIES
+    blues, greens, reds = (power_table(channel, factors[channel], entries[channel]) for channel in range(3))
     total = reds.take(red >> shift)
     cv2.add(total, cv2.LUT(blue, blues), dst=total)
     cv2.add(total, cv2.LUT(green, greens), dst=total)
-    return np.asarray(cv2.GaussianBlur(total, (3, 3), 0)).astype(np.uint16)
+    blurred = np.asarray(cv2.GaussianBlur(total, (3, 3), 0)).astype(np.uint16)
+    lowest, highest = cv2.minMaxLoc(blurred)[:2]
+    return blurred, int(lowest), int(highest)
 
 
-def _plain_counts(values: NDArray[np.uint16], lowest: int, highest: int, shift: int) -> NDArray[np.int64]:
-    places = (values - np.uint16(lowest)) >> shift
-    return np.bincount(places.ravel(), minlength=((highest - lowest) >> shift) + 1)
-
-
-def _plain_look_up(values: NDArray[np.uint16], lowest: int, shift: int, levels: NDArray[np.uint8]) -> Image:
-    return levels.take((values - np.uint16(lowest)) >> shift)
-
-
-PLAIN: Final = SkinLoops(_plain_red, _plain_redness, _plain_counts, _plain_look_up)
-_POWERS = np.arange(RED_ENTRIES, dtype=np.float64) ** EXPONENT
-
-
-def _power_tables(gains: NDArray[np.float64], shift: int) -> tuple[Float, Float, Float]:
-    """What each value of blue, green and red adds to the redness, float32 with whole numbers.
-
-    Balancing scales a channel and the power follows it, so that every table is the same one, scaled and clipped.
-    """
-    steps = 255.0, 255.0, 255.0 * FINE / (1 << shift)
-    factors = [(gain / step) ** EXPONENT for gain, step in zip(gains.tolist(), steps, strict=True)]
-    weights = -YELLOW_WEIGHT, YELLOW_WEIGHT - 1.0, 1.0
-    middle = UNIT, 0, 0
-    tables = [
-        np.rint(np.minimum(_POWERS[:entries] * factor, 1.0) * (weight * UNIT)) + offset
-        for entries, factor, weight, offset in zip(
-            (256, 256, RED_ENTRIES), factors, weights, middle, strict=True
-        )
-    ]
-    blue, green, red = (table.astype(np.float32) for table in tables)
-    return blue, green, red
-
-
-def _fast_stretch(values: NDArray[np.uint16], loops: SkinLoops) -> Image:
-    """`stretch` of a redness in units of 1 / UNIT, with percentiles from a histogram."""
-    lowest, highest = (int(end) for end in cv2.minMaxLoc(values)[:2])
+def _plain_stretch(values: NDArray[np.uint16], lowest: int, highest: int) -> Image:
     shift = max((highest - lowest).bit_length() - (BINS - 1).bit_length(), 0)
-    below = loops.counts(values, lowest, highest, shift).cumsum()
+    places = (values - np.uint16(lowest)) >> shift
+    below = np.bincount(places.ravel(), minlength=((highest - lowest) >> shift) + 1).cumsum()
     low, high = (
         _order_statistic(below, percent / 100.0 * (values.size - 1))
         for percent in (LOW_PERCENTILE, HIGH_PERCENTILE)
@@ -189,7 +171,15 @@ def _fast_stretch(values: NDArray[np.uint16], loops: SkinLoops) -> Image:
     if (high - low) * (1 << shift) < FLAT * UNIT:
         return np.zeros(values.shape, np.uint8)
     levels = (np.arange(len(below)) - low) * (255.0 / (high - low))
-    return loops.look_up(values, lowest, shift, levels.clip(0.0, 255.0).astype(np.uint8))
+    return levels.clip(0.0, 255.0).astype(np.uint8).take(places)
+
+
+PLAIN: Final = SkinLoops(_plain_red, _plain_redness, _plain_stretch)
+POWERS: Final = np.arange(RED_ENTRIES, dtype=np.float64) ** EXPONENT
+WEIGHTS: Final = (-YELLOW_WEIGHT * UNIT, (YELLOW_WEIGHT - 1.0) * UNIT, 1.0 * UNIT)
+"""Of the powers of blue, green and red."""
+OFFSETS: Final = (UNIT, 0, 0)
+"""What is added to them, so that no redness is negative."""
 
 
 def _order_statistic(below: NDArray[np.intp], rank: float) -> float:

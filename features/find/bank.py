@@ -11,7 +11,7 @@ frequencies are its coarse shape. Place and size are divided out. Orientation is
 fingers above: with it, hands are told from other things much better than without.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
@@ -79,19 +79,46 @@ class Bank:
             raise ValueError("a class has no centre, or a centre no class")
 
 
+@dataclass(frozen=True, slots=True)
+class BankLoops:
+    """The passes over outlines.
+
+    sampled: (points, starts, lengths, count) -> float32 (n, 2 count), so many points of each outline, x and then y from
+        their middle; int64 (n,), the first of the highest of them.
+    turned: (coefficients, start, shifts) -> float32 (n, 4 harmonics): Fourier coefficients, real parts and then
+        imaginary ones, of outlines that begin at another of their points. shifts: of `_transform`.
+    """
+
+    sampled: Callable[
+        [NDArray[np.int32], NDArray[np.int64], NDArray[np.int64], int], tuple[Float, NDArray[np.int64]]
+    ]
+    turned: Callable[[Float, NDArray[np.int64], Float], Float]
+
+
 def bank_distances(contours: Sequence[Contour], bank: Bank) -> Float:
     """Distance of each outline to the nearest centre of each class, float32 (n, classes), at least 0.
 
     contours: as `describe_outlines` takes them. Descriptors are of outlines of size 1, so 0.1 is near and 1 is far.
     """
-    found = describe_outlines(contours, bank.settings)
+    return distances_from(describe_outlines(contours, bank.settings), bank)
+
+
+def distances_from(described: Float, bank: Bank) -> Float:
+    """`bank_distances` of outlines that are described, float32 (n, settings.length)."""
     # |a - b|² = |a|² - 2 ab + |b|²: all pairs by one matrix product; rounding may leave a tiny negative square.
-    squares = found @ (-2.0 * bank.centres.T)
-    squares += np.square(found).sum(axis=1, keepdims=True)
-    squares += np.square(bank.centres).sum(axis=1)
-    starts = np.searchsorted(bank.owner, np.arange(len(bank.classes)))
+    factors, constant, starts = _of_centres(bank)
+    squares = described @ factors
+    squares += np.square(described).sum(axis=1, keepdims=True)
+    squares += constant
     nearest = np.minimum.reduceat(squares, starts, axis=1)
     return np.asarray(np.sqrt(np.maximum(nearest, 0.0)), np.float32)
+
+
+@lru_cache(maxsize=4)
+def _of_centres(bank: Bank) -> tuple[Float, Float, NDArray[np.intp]]:
+    """-2 times the centres, a column each; their squares; where each class begins."""
+    starts = np.searchsorted(bank.owner, np.arange(len(bank.classes)))
+    return -2.0 * bank.centres.T, np.square(bank.centres).sum(axis=1), starts
 
 
 def hand_proximity(distances: Float, bank: Bank) -> Float:
@@ -101,11 +128,15 @@ def hand_proximity(distances: Float, bank: Bank) -> Float:
     """
     if OTHER not in bank.classes or len(bank.classes) < 2:
         raise ValueError(f"the bank must hold hands and the class {OTHER!r}; build it with both")
-    index = bank.classes.index(OTHER)
-    other = distances[:, index]
-    hand = np.delete(distances, index, axis=1).min(axis=1)
+    other, hand = distances[:, bank.classes.index(OTHER)], nearest_hand(distances, bank)
     both = other + hand
     return np.asarray(np.where(both > 0.0, other / np.maximum(both, 1e-9), 0.5), np.float32)
+
+
+def nearest_hand(distances: Float, bank: Bank) -> Float:
+    """float32 (n,): the distance of each outline to the nearest hand. distances: of `bank_distances`."""
+    hands = [index for index, name in enumerate(bank.classes) if name != OTHER]
+    return np.asarray(distances.take(hands, axis=1).min(axis=1), np.float32)
 
 
 def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings | None = None) -> Float:
@@ -119,25 +150,48 @@ def describe_outlines(contours: Sequence[Contour], settings: DescriptorSettings 
     settings = settings or DescriptorSettings()
     if not contours:
         return np.zeros((0, settings.length), np.float32)
-    x, y = _sample(contours, settings.points)
-    x -= x.mean(axis=1, keepdims=True)
-    y -= y.mean(axis=1, keepdims=True)
-    spread = np.sqrt((np.square(x) + np.square(y)).mean(axis=1, keepdims=True))
-    start = y.argmin(axis=1)
+    lengths = np.array([len(contour) for contour in contours])
+    return describe_points(np.concatenate(contours), np.cumsum(lengths) - lengths, lengths, settings)
+
+
+def describe_points(
+    points: NDArray[np.int32],
+    starts: NDArray[np.int64],
+    lengths: NDArray[np.int64],
+    settings: DescriptorSettings,
+    loops: BankLoops | None = None,
+) -> Float:
+    """`describe_outlines` of outlines in one array, int32 (m, 2). starts, lengths: int64 (n,), where each begins and
+    how many points it has."""
+    loops = loops or PLAIN
+    sampled, start = loops.sampled(points, starts, lengths, settings.points)
+    squares = np.square(sampled)
+    x, y = squares[:, : settings.points], squares[:, settings.points :]
+    spread = np.sqrt((x + y).sum(axis=1, keepdims=True) / np.float32(settings.points))
     transform, shifts = _transform(settings)
-    coefficients = (np.concatenate([x, y], axis=1) / np.maximum(spread, SMALLEST_SPREAD)) @ transform
-    real, imaginary = coefficients[:, : 2 * settings.harmonics], coefficients[:, 2 * settings.harmonics :]
+    return loops.turned((sampled / np.maximum(spread, SMALLEST_SPREAD)) @ transform, start, shifts)
+
+
+def _plain_sampled(
+    points: NDArray[np.int32], starts: NDArray[np.int64], lengths: NDArray[np.int64], count: int
+) -> tuple[Float, NDArray[np.int64]]:
+    # Evenly spaced among its own.
+    chosen = starts[:, None] + lengths[:, None] * np.arange(count) // count
+    sampled = np.empty((len(starts), 2 * count), np.float32)
+    for axis, half in enumerate((sampled[:, :count], sampled[:, count:])):
+        half[:] = points[:, axis].take(chosen)
+        half -= half.sum(axis=1, keepdims=True) / np.float32(count)
+    return sampled, sampled[:, count:].argmin(axis=1)
+
+
+def _plain_turned(coefficients: Float, start: NDArray[np.int64], shifts: Float) -> Float:
+    half = coefficients.shape[1] // 2
+    real, imaginary = coefficients[:, :half], coefficients[:, half:]
     cosine, sine = shifts[0][start], shifts[1][start]
     return np.concatenate([real * cosine - imaginary * sine, real * sine + imaginary * cosine], axis=1)
 
 
-def _sample(contours: Sequence[Contour], count: int) -> tuple[Float, Float]:
-    """`count` points of each outline, evenly spaced among its own: x and y, float32 (n, count)."""
-    lengths = np.array([len(contour) for contour in contours])
-    first = np.cumsum(lengths) - lengths
-    chosen = first[:, None] + lengths[:, None] * np.arange(count) // count
-    points = np.concatenate(contours)[chosen].astype(np.float32)
-    return points[..., 0].copy(), points[..., 1].copy()
+PLAIN: Final = BankLoops(_plain_sampled, _plain_turned)
 
 
 @lru_cache(maxsize=4)

@@ -8,7 +8,7 @@ other, stand apart, have one skin, and a face between them.
 """
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import lru_cache, partial
 from itertools import combinations
 from typing import Final
 
@@ -26,6 +26,8 @@ Rows = NDArray[np.float64]
 strength, how clearly it stands out (the level of its threshold or the heat of its peak; only the difference between two
 counts); mean blue, green and red inside, 0 to 1."""
 Point = tuple[float, float]
+Numbers = Callable[[Rows, Rows, tuple[int, int], Point | None], Float]
+"""See `numbers_of`."""
 
 PLACE_COLUMNS: Final = 14
 """Numbers of one place."""
@@ -96,31 +98,49 @@ def candidate_rows(
     boxes: NDArray[np.float32 | np.int32],
     scores: Float,
     strengths: NDArray[np.float32 | np.uint8],
-    colours: Sequence[Float],
+    colours: Sequence[Float] | Float,
 ) -> Rows:
     """The rows of n candidates: boxes (n, 4), scores (n,), strengths (n,), n mean colours (3,); see `Rows`."""
-    return np.column_stack([boxes, scores, strengths, np.reshape(colours, (-1, 3))]).astype(np.float64)
+    rows = np.empty((len(boxes), 9), np.float64)
+    rows[:, :4], rows[:, 4], rows[:, 5] = boxes, scores, strengths
+    rows[:, 6:] = np.reshape(colours, (-1, 3))
+    return rows
 
 
 def pair_numbers(
-    candidates: Rows, size: tuple[int, int], face: Point | None
-) -> tuple[list[tuple[int, int]], Float]:
-    """All pairs of candidates that overlap at most `APART_IOU`, and their numbers, float32 (pairs, PAIR_COLUMNS).
+    candidates: Rows,
+    size: tuple[int, int],
+    face: Point | None,
+    overlap: NDArray[np.float64] | None = None,
+    numbers: Numbers | None = None,
+) -> tuple[NDArray[np.intp], Float]:
+    """All pairs of candidates that overlap at most `APART_IOU`, intp (pairs, 2), and their numbers, float32 (pairs,
+    PAIR_COLUMNS).
 
     A pair has the same numbers whichever of the two comes first. size: (width, height) of the working picture. face:
-    centre of the likeliest face, None where none is seen.
+    centre of the likeliest face, None where none is seen. overlap: float64 (n, n), IoU of every two where it is known.
+    numbers: None for `numbers_of`.
     """
-    overlap = pairwise_iou(candidates[:, :4], candidates[:, :4])
-    pairs = [(i, j) for i, j in combinations(range(len(candidates)), 2) if overlap[i, j] <= APART_IOU]
-    if not pairs:
-        return [], np.zeros((0, PAIR_COLUMNS), np.float32)
-    a, b = (candidates[list(places)] for places in zip(*pairs, strict=True))
-    swapped = a[:, 0] + a[:, 2] / 2 > b[:, 0] + b[:, 2] / 2
-    a[swapped], b[swapped] = b[swapped], a[swapped]
-    return pairs, _numbers_of(a, b, size, face)
+    if overlap is None:
+        overlap = pairwise_iou(candidates[:, :4], candidates[:, :4])
+    every = _every_two(len(candidates))
+    pairs = every[overlap.take(every[:, 0] * len(candidates) + every[:, 1]) <= APART_IOU]
+    if not len(pairs):
+        return pairs, np.zeros((0, PAIR_COLUMNS), np.float32)
+    middles = candidates[:, 0] + candidates[:, 2] / 2
+    is_swapped = middles.take(pairs[:, 0]) > middles.take(pairs[:, 1])
+    left, right = np.where(is_swapped, pairs.T[::-1], pairs.T)
+    told = numbers or numbers_of
+    return pairs, told(candidates.take(left, axis=0), candidates.take(right, axis=0), size, face)
 
 
-def _numbers_of(a: Rows, b: Rows, size: tuple[int, int], face: Point | None) -> Float:
+@lru_cache(maxsize=MOST + 1)
+def _every_two(count: int) -> NDArray[np.intp]:
+    """intp (pairs, 2): all pairs of so many, the lower first."""
+    return np.array(list(combinations(range(count), 2)), np.intp).reshape(-1, 2)
+
+
+def numbers_of(a: Rows, b: Rows, size: tuple[int, int], face: Point | None) -> Float:
     """float32 (n, PAIR_COLUMNS) of n pairs, `a` being the left ones."""
     sides_a, sides_b = np.sqrt(a[:, 2] * a[:, 3]), np.sqrt(b[:, 2] * b[:, 3])
     unit = np.sqrt(sides_a * sides_b)
@@ -155,12 +175,16 @@ def score_pairs(trees: Trees, candidates: Rows, size: tuple[int, int], face: Poi
 
 
 def scored_pairs(
-    score: Callable[[Float], Float], candidates: Rows, size: tuple[int, int], face: Point | None
+    score: Callable[[Float], Float],
+    candidates: Rows,
+    size: tuple[int, int],
+    face: Point | None,
+    overlap: NDArray[np.float64] | None = None,
+    numbers: Numbers | None = None,
 ) -> Float:
     """`score_pairs` by whatever scores rows of `pair_numbers`, float32 (pairs, PAIR_COLUMNS) -> (pairs,)."""
     together = np.zeros((len(candidates), len(candidates)), np.float32)
-    pairs, rows = pair_numbers(candidates, size, face)
-    if pairs:
-        first, second = np.array(pairs).T
-        together[first, second] = score(rows).clip(0.0, 1.0)
+    pairs, rows = pair_numbers(candidates, size, face, overlap, numbers)
+    if len(pairs):
+        together[pairs[:, 0], pairs[:, 1]] = score(rows).clip(0.0, 1.0)
     return np.maximum(together, together.T)

@@ -6,32 +6,46 @@ the bank, by more trees. So a frame costs a bounded time whatever it shows. Sele
 baseline of every table.
 """
 
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
 from lightgesture.features.find import cells
-from lightgesture.features.find.bank import OTHER, Bank, bank_distances, hand_proximity
-from lightgesture.features.find.candidates import Rows, best_distinct, candidate_rows, scored_pairs
+from lightgesture.features.find.bank import PLAIN as PLAIN_BANK
+from lightgesture.features.find.bank import (
+    Bank,
+    BankLoops,
+    describe_points,
+    distances_from,
+    hand_proximity,
+    nearest_hand,
+)
+from lightgesture.features.find.candidates import (
+    Numbers,
+    Rows,
+    best_distinct,
+    candidate_rows,
+    numbers_of,
+    scored_pairs,
+)
 from lightgesture.features.find.cells import PLAIN, CellLoops
 from lightgesture.features.find.proposals import (
     LEVELS,
-    Distinct,
     Proposals,
-    fill_contour,
-    plain_distinct,
+    RegionLoops,
     whole_regions,
     without_forearms,
 )
+from lightgesture.features.find.proposals import PLAIN as PLAIN_REGIONS
 from lightgesture.features.find.selector_file import BANK_NUMBERS, ClassicalParts
 from lightgesture.features.find.settings import CLASSICAL, SelectorSettings
 from lightgesture.features.find.trees import FlatTrees, Trees, Walk, plain_walk
-from lightgesture.features.geometry import pairwise_iou, scale_boxes
+from lightgesture.features.geometry import scale_boxes
 from lightgesture.features.skin_map import PLAIN as PLAIN_SKIN
 from lightgesture.features.skin_map import SkinLoops, skin_map
 from lightgesture.features.types import Box, Candidates, Float, HandRegion, Image
@@ -54,8 +68,10 @@ class Loops:
 
     skin: SkinLoops = PLAIN_SKIN
     cells: CellLoops = PLAIN
-    distinct: Distinct = plain_distinct
+    regions: RegionLoops = PLAIN_REGIONS
     walk: Walk = plain_walk
+    pairs: Numbers = numbers_of
+    bank: BankLoops = PLAIN_BANK
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,9 +83,10 @@ class Scene:
     size: tuple[int, int]
 
     @classmethod
-    def of(cls, colour: ColourMap, loops: Loops) -> "Scene":
+    def of(cls, colour: ColourMap, loops: Loops, room: cells.Sums | None = None) -> "Scene":
+        """room: of `cells.channel_sums`."""
         skin = skin_map(colour.picture, loops.skin) if colour.skin_of is skin_map else colour.skin
-        sums = cells.channel_sums(colour.picture, skin, loops.cells)
+        sums = cells.channel_sums(colour.picture, skin, loops.cells, room)
         return cls(skin, sums, (skin.shape[1], skin.shape[0]))
 
 
@@ -86,12 +103,12 @@ class Scorer:
 
         levels: of `whole_regions`.
         """
-        whole = whole_regions(scene.skin, levels, self._loops.distinct)
+        whole = whole_regions(scene.skin, levels, self._loops.regions)
         rows = cells.describe(scene.sums, whole, scene.size, self._loops.cells)
         seen, rows = standing_out(
             scene, whole, rows, self._glance.scores(rows, self._loops.walk), self._loops
         )
-        numbers = with_bank(rows, seen, self._bank)
+        numbers = with_bank(rows, seen, self._bank, self._loops.bank)
         return seen, self._regions.scores(numbers, self._loops.walk)
 
 
@@ -101,36 +118,36 @@ def standing_out(
     """The regions that get the second look, with and without forearms, and their rows of `cells.describe`."""
     best = np.argsort(-scores, kind="stable")[:STANDING_OUT]
     chosen = whole.taken(best)
-    hands = without_forearms(chosen, range(min(len(chosen), ARMS)))
+    hands = without_forearms(whole.taken(best[:ARMS]), loops.regions)
     more = cells.describe(scene.sums, hands, scene.size, loops.cells)
     return chosen.joined(hands), np.concatenate([rows[best], more])
 
 
-def with_bank(rows: Float, regions: Proposals, bank: Bank) -> Float:
+def with_bank(rows: Float, regions: Proposals, bank: Bank, loops: BankLoops | None = None) -> Float:
     """float32 (n, COLUMNS): rows of `cells.describe`, then how near the outline is to the bank's hands, and how much
     nearer than to other things."""
     if not len(regions):
         return np.zeros((0, COLUMNS), np.float32)
-    distances = bank_distances(regions.contours, bank)
-    hands = np.delete(distances, bank.classes.index(OTHER), axis=1).min(axis=1)
-    return np.column_stack([rows, hands, hand_proximity(distances, bank)]).astype(np.float32)
-
-
-def mean_colour(colour: ColourMap, proposals: Proposals, index: int) -> Float:
-    """float32 (3,): mean blue, green and red inside the outline of a proposal, 0 to 1."""
-    x, y, width, height = proposals.box(index)
-    mask = fill_contour(proposals.contours[index], (x, y, width, height))
-    means = cv2.mean(colour.picture[y : y + height, x : x + width], mask)[:3]
-    return np.array(means, np.float32) / np.float32(255.0)
+    described = describe_points(regions.points, regions.starts, regions.lengths, bank.settings, loops)
+    distances = distances_from(described, bank)
+    found = np.empty((len(regions), COLUMNS), np.float32)
+    found[:, :-BANK_NUMBERS] = rows
+    found[:, -2], found[:, -1] = nearest_hand(distances, bank), hand_proximity(distances, bank)
+    return found
 
 
 def scored_candidates(
-    colour: ColourMap, proposals: Proposals, scores: Float, overlap: NDArray[np.float64]
+    colour: ColourMap,
+    proposals: Proposals,
+    scores: Float,
+    overlap: NDArray[np.float64],
+    loops: RegionLoops | None = None,
 ) -> tuple[list[int], Rows]:
     """Numbers of the proposals that go on to pairing, and what their pairs need. overlap: IoU of every two, (n, n)."""
     kept = best_distinct(overlap, scores)
-    colours = [mean_colour(colour, proposals, index) for index in kept]
-    return kept, candidate_rows(proposals.boxes[kept], scores[kept], proposals.levels[kept], colours)
+    chosen = proposals.taken(np.array(kept, np.intp))
+    colours = (loops or PLAIN_REGIONS).colours(colour.picture, chosen).astype(np.float32) / np.float32(255.0)
+    return kept, candidate_rows(chosen.boxes, scores[kept], chosen.levels, colours)
 
 
 def other_extents(overlap: NDArray[np.float64], scores: Float, kept: Sequence[int]) -> list[list[int]]:
@@ -149,13 +166,25 @@ def other_extents(overlap: NDArray[np.float64], scores: Float, kept: Sequence[in
     return others
 
 
-def _region(
-    colour: ColourMap, proposals: Proposals, index: int, score: float, extents: Sequence[int]
-) -> HandRegion:
-    """A proposal in source pixels."""
-    boxes = scale_boxes(proposals.boxes[[index, *extents]], colour.scale, colour.source_size)
-    contour = np.rint((proposals.contours[index] + 0.5) * np.array(colour.scale)).astype(np.int32)
-    return HandRegion(boxes[0], contour, None, min(max(score, 0.0), 1.0), tuple(boxes[1:]))
+def _regions(
+    colour: ColourMap,
+    proposals: Proposals,
+    scores: Float,
+    kept: Sequence[int],
+    others: Sequence[Sequence[int]],
+) -> Iterator[HandRegion]:
+    """The kept proposals in source pixels, each with its other extents."""
+    numbers = [number for index, extents in zip(kept, others, strict=True) for number in (index, *extents)]
+    boxes = iter(scale_boxes(proposals.boxes[numbers], colour.scale, colour.source_size))
+    outlines = [proposals.contour(index) for index in kept]
+    points = np.concatenate(outlines) if outlines else np.zeros((0, 2), np.int32)
+    contours = np.rint((points + 0.5) * np.array(colour.scale)).astype(np.int32)
+    begin = 0
+    for index, extents, outline in zip(kept, others, outlines, strict=True):
+        contour = contours[begin : begin + len(outline)]
+        begin += len(outline)
+        score = min(max(float(scores[index]), 0.0), 1.0)
+        yield HandRegion(next(boxes), contour, None, score, tuple(next(boxes) for _ in extents))
 
 
 class ClassicalSelector:
@@ -168,21 +197,30 @@ class ClassicalSelector:
         self._loops = loops or Loops()
         self._scorer = Scorer(parts.glance, parts.regions, parts.bank, self._loops)
         self._pairs = FlatTrees.of(parts.pairs)
+        # Of frames before: one for each thread that searches at a time.
+        self._rooms: deque[cells.Sums] = deque()
 
     def process(self, colour: ColourMap) -> Candidates:
         """Score the regions of one frame. A frame without contrast gives no candidates."""
-        scene = Scene.of(colour, self._loops)
+        try:
+            room = self._rooms.pop()
+        except IndexError:
+            room = None
+        scene = Scene.of(colour, self._loops, room)
         proposals, scores = self._scorer.process(scene)
-        overlap = pairwise_iou(proposals.boxes, proposals.boxes)
-        kept, items = scored_candidates(colour, proposals, scores, overlap)
+        self._rooms.append(scene.sums)
+        overlap = self._loops.regions.overlaps(proposals.boxes)
+        kept, items = scored_candidates(colour, proposals, scores, overlap, self._loops.regions)
         together = scored_pairs(
-            lambda rows: self._pairs.scores(rows, self._loops.walk), items, scene.size, None
+            lambda rows: self._pairs.scores(rows, self._loops.walk),
+            items,
+            scene.size,
+            None,
+            overlap[kept][:, kept],
+            self._loops.pairs,
         )
-        regions = tuple(
-            _region(colour, proposals, index, float(scores[index]), extents)
-            for index, extents in zip(kept, other_extents(overlap, scores, kept), strict=True)
-        )
-        return Candidates(regions, together, colour.source_size)
+        regions = _regions(colour, proposals, scores, kept, other_extents(overlap, scores, kept))
+        return Candidates(tuple(regions), together, colour.source_size)
 
     def follow(self, image: Image, boxes: Sequence[Box]) -> Candidates | None:
         """None: this choice cannot but search."""

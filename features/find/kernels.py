@@ -1,4 +1,4 @@
-"""Loops over pixels, cells, boxes and nodes, to be compiled: what `PLAIN` of each stage computes, byte for byte.
+"""Loops over pixels, cells, boxes and trees, to be compiled: what `PLAIN` of each stage computes, byte for byte.
 
 As Python they run too, some hundred times as slow; `features/compiled.py` has numba compile them. All numbers are whole
 up to the last division, so that the order in which they are added changes nothing.
@@ -17,108 +17,67 @@ from lightgesture.features.find.cells import (
     PART,
 )
 from lightgesture.features.find.proposals import SAME_HUNDREDTHS
-from lightgesture.features.skin_map import FINE, SHARE_BITS
 
 # Numba has no types that a type checker knows.
 Array = Any
 
+HELPERS = ("slopes",)
+"""What the loops call."""
 COUNT = CELLS * CELLS
+NONE, QUARTER, STRONGEST = np.float32(0.0), np.float32(0.25), np.float32(255.0)
+NEAR, FAR = np.float32(12.0), np.float32(29.0)
 STEP_UNIT = 10 * CELLS
 FIRST_STEP = 5 * CELLS - CELLS * CONTEXT_TENTHS // 2
 
 
-def red(picture: Array, share: int) -> Array:
-    """See `skin_map.SkinLoops`."""
-    height, width = picture.shape[:2]
-    found = np.empty((height, width), np.uint16)
-    for y in range(height):
-        for x in range(width):
-            value = np.int64(picture[y, x, 2])
-            given_back = ((255 - value) * np.int64(picture[y, x, 1]) * share) >> SHARE_BITS
-            found[y, x] = value * FINE + given_back
-    return found
+def slopes(luma: Array, y: int, smooth: Array, slope: Array) -> None:
+    """Write what a row of Sobel's derivatives is made of, float32 (w + 2,): the rows round y by 1-2-1 and the last less
+    the first, with a pixel more at either end."""
+    height, width = luma.shape
+    # At the rim the pixel on the other side counts twice, as in OpenCV.
+    above = luma[abs(y - 1) if height > 1 else 0]
+    here = luma[y]
+    below = luma[y + 1 if y + 1 < height else max(height - 2, 0)]
+    for x in range(width):
+        first, last = np.float32(above[x]), np.float32(below[x])
+        smooth[x + 1] = first + np.float32(2.0) * np.float32(here[x]) + last
+        slope[x + 1] = last - first
+    inner, outer = min(2, width), max(width - 1, 1)
+    smooth[0], smooth[width + 1] = smooth[inner], smooth[outer]
+    slope[0], slope[width + 1] = slope[inner], slope[outer]
 
 
-def redness(
-    picture: Array, compensated: Array, shift: int, blues: Array, greens: Array, reds: Array
-) -> Array:
-    """See `skin_map.SkinLoops`."""
-    height, width = compensated.shape
-    across = np.empty((height, width), np.int32)
-    line = np.empty(width, np.int32)
-    for y in range(height):
-        for x in range(width):
-            line[x] = np.int32(
-                reds[compensated[y, x] >> shift] + blues[picture[y, x, 0]] + greens[picture[y, x, 1]]
-            )
-        # At the rim the blur sees the pixel on the other side twice, as OpenCV's does.
-        if width == 1:
-            across[y, 0] = 4 * line[0]
-            continue
-        across[y, 0] = 2 * line[0] + 2 * line[1]
-        across[y, width - 1] = 2 * line[width - 1] + 2 * line[width - 2]
-        for x in range(1, width - 1):
-            across[y, x] = line[x - 1] + 2 * line[x] + line[x + 1]
-    found = np.empty((height, width), np.uint16)
-    for y in range(height):
-        above = abs(y - 1) if height > 1 else 0
-        below = y + 1 if y + 1 < height else max(height - 2, 0)
-        for x in range(width):
-            found[y, x] = (across[above, x] + 2 * across[y, x] + across[below, x]) >> 4
-    return found
-
-
-def counts(values: Array, lowest: int, highest: int, shift: int) -> Array:
-    """See `skin_map.SkinLoops`."""
-    found = np.zeros(((highest - lowest) >> shift) + 1, np.int64)
-    for y in range(values.shape[0]):
-        for x in range(values.shape[1]):
-            found[(np.int64(values[y, x]) - lowest) >> shift] += 1
-    return found
-
-
-def look_up(values: Array, lowest: int, shift: int, levels: Array) -> Array:
-    """See `skin_map.SkinLoops`."""
-    found = np.empty(values.shape, np.uint8)
-    for y in range(values.shape[0]):
-        for x in range(values.shape[1]):
-            found[y, x] = levels[(np.int64(values[y, x]) - lowest) >> shift]
-    return found
-
-
-def sums(luma: Array, skin: Array, dx: Array, dy: Array) -> Array:
+def sums(luma: Array, skin: Array, found: Array) -> None:
     """See `cells.CellLoops`."""
     height, width = luma.shape
-    found = np.zeros((2 + DIRECTIONS, height + 1, width + 1), np.int32)
+    found[:, 0, :] = 0
+    columns = np.zeros((2 + DIRECTIONS, width), np.int32)
+    smooth, slope = np.empty(width + 2, np.float32), np.empty(width + 2, np.float32)
+    # Single precision holds all these whole numbers; each of these loops is one of vectors.
     for y in range(height):
-        lumas: Array = 0
-        skins: Array = 0
-        first: Array = 0
-        second: Array = 0
-        third: Array = 0
-        fourth: Array = 0
+        slopes(luma, y, smooth, slope)
         for x in range(width):
-            lumas += np.int64(luma[y, x])
-            skins += np.int64(skin[y, x])
-            along_x, along_y = np.int64(dx[y, x]), np.int64(dy[y, x])
-            strength = np.sqrt(np.float32(along_x * along_x + along_y * along_y)) * np.float32(0.25)
-            magnitude = np.int64(min(strength, np.float32(255.0)))
+            columns[0, x] += luma[y, x]
+            columns[1, x] += skin[y, x]
+        for x in range(width):
+            along_x = smooth[x + 2] - smooth[x]
+            along_y = slope[x] + np.float32(2.0) * slope[x + 1] + slope[x + 2]
+            strength = np.sqrt(along_x * along_x + along_y * along_y) * QUARTER
+            magnitude = np.int32(strength if strength < STRONGEST else STRONGEST)
             wide, tall = abs(along_x), abs(along_y)
-            if 29 * tall < 12 * wide:
-                first += magnitude
-            elif 29 * wide < 12 * tall:
-                third += magnitude
-            elif (along_x ^ along_y) >= 0:
-                second += magnitude
-            else:
-                fourth += magnitude
-            found[0, y + 1, x + 1] = found[0, y, x + 1] + lumas
-            found[1, y + 1, x + 1] = found[1, y, x + 1] + skins
-            found[2, y + 1, x + 1] = found[2, y, x + 1] + first
-            found[3, y + 1, x + 1] = found[3, y, x + 1] + second
-            found[4, y + 1, x + 1] = found[4, y, x + 1] + third
-            found[5, y + 1, x + 1] = found[5, y, x + 1] + fourth
-    return found
+            is_wide, is_tall = FAR * tall < NEAR * wide, FAR * wide < NEAR * tall
+            is_rising = (along_x < NONE) == (along_y < NONE)
+            is_slanted = not (is_wide or is_tall)
+            columns[2, x] += magnitude if is_wide else np.int32(0)
+            columns[3, x] += magnitude if is_slanted and is_rising else np.int32(0)
+            columns[4, x] += magnitude if is_tall else np.int32(0)
+            columns[5, x] += magnitude if is_slanted and not is_rising else np.int32(0)
+        for plane in range(2 + DIRECTIONS):
+            total: Array = 0
+            found[plane, y + 1, 0] = 0
+            for x in range(width):
+                total += columns[plane, x]
+                found[plane, y + 1, x + 1] = total
 
 
 def cells(summed: Array, boxes: Array) -> Array:
@@ -191,16 +150,25 @@ def distinct(boxes: Array, most: int) -> Array:
 
 
 def walk(
-    roots: Array, feature: Array, threshold: Array, children: Array, leaf: Array, depth: int, rows: Array
+    roots: Array, feature: Array, threshold: Array, first: Array, leaf: Array, depth: int, rows: Array
 ) -> Array:
-    """See `trees.Walk`, with the fields of the trees one by one."""
-    # Row by row within a tree: the steps of several rows are under way at once, and none waits for a leaf.
-    found = np.zeros(len(rows), np.int64)
+    """See `trees.Walk`, with the fields of the trees one by one, of unsigned numbers where they name places."""
+    count = len(rows)
+    found = np.zeros(count + 3, np.int64)
     for tree in range(len(roots)):
-        root = roots[tree]
-        for row in range(len(rows)):
-            node = root
+        # Four rows at once, the last perhaps again, as none of their steps waits for another's.
+        for row in range(0, count, 4):
+            one, other = rows[row], rows[min(row + 1, count - 1)]
+            third, fourth = rows[min(row + 2, count - 1)], rows[min(row + 3, count - 1)]
+            a = np.uint64(roots[tree])
+            b, c, d = a, a, a
             for _ in range(depth):
-                node = children[2 * node + np.int64(rows[row, feature[node]] > threshold[node])]
-            found[row] += leaf[node]
-    return found
+                a = first[a] + np.uint32(one[feature[a]] > threshold[a])
+                b = first[b] + np.uint32(other[feature[b]] > threshold[b])
+                c = first[c] + np.uint32(third[feature[c]] > threshold[c])
+                d = first[d] + np.uint32(fourth[feature[d]] > threshold[d])
+            found[row] += leaf[a]
+            found[row + 1] += leaf[b]
+            found[row + 2] += leaf[c]
+            found[row + 3] += leaf[d]
+    return found[:count].copy()

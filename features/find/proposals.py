@@ -4,14 +4,9 @@ One threshold finds a hand only where its skin is redder than what touches it by
 outer contours at all levels are the nodes of the component tree that MSER walks (Matas, Chum, Urban and
 Pajdla, "Robust wide-baseline stereo from maximally stable extremal regions", 2002); somewhere along
 the tree the hand stands alone.
-
-A forearm is cut off at the wrist. The palm is the largest circle inside the outline. What leaves it downwards beyond
-the circle is the forearm, straight or slanted, and gives the arm's direction; the wrist crosses it about one radius
-from the palm's centre. Fingers stay out of this because a raised hand has them above its palm.
 """
 
-import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -20,10 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourMap
-from lightgesture.features.geometry import keep_distinct
+from lightgesture.features.find.forearms import cut_forearm, fill_contour
+from lightgesture.features.geometry import keep_distinct, pairwise_iou
 from lightgesture.features.types import Box, Contour, Image
-
-Point = tuple[float, float]
 
 LEVELS: Final = 24
 """Thresholds over the skin map; 8 lose hands in the dark, and 32 find no more."""
@@ -43,33 +37,53 @@ MOST_LOOKED_AT: Final = 192
 """Regions compared with one another for near-equal ones, of which those of the highest levels count."""
 MOST_OUTLINES: Final = 1200
 """Outlines, specks included, after which no lower level is looked at: a picture of noise has thousands at each."""
-WRIST_DISTANCE: Final = 1.2
-"""Of the wrist from the palm's centre along the arm, palm radii."""
-ARM_TOP: Final = 0.6
-"""Palm radii below the palm's centre; what lies higher does not count for the arm's direction."""
-ARM_RING: Final = 1.3
-"""Radius of the circle that counts as palm, palm radii; the arm is what lies outside."""
-LEAST_REMAINDER: Final = 0.06
-"""Share of the region's area that the arm must have, else nothing is cut."""
-LEAST_HEIGHT: Final = 5
-"""Of what remains, pixels of the working picture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Proposals:
     """Regions of one frame in pixels of the working picture.
 
-    boxes: int32 (n, 4). contours: n arrays int32 (k, 2). levels: uint8 (n,), the threshold at which
-    each stands alone. cut: bool (n,), True where a forearm was cut off.
+    boxes: int32 (n, 4). points: int32 (m, 2), outlines one after the other, perhaps more than these regions'. starts,
+    lengths: int64 (n,), where in `points` each outline begins and how many it has. levels: uint8 (n,), the threshold at
+    which each stands alone. cut: bool (n,), True where a forearm was cut off.
     """
 
     boxes: NDArray[np.int32]
-    contours: tuple[Contour, ...]
+    points: NDArray[np.int32]
+    starts: NDArray[np.int64]
+    lengths: NDArray[np.int64]
     levels: NDArray[np.uint8]
     cut: NDArray[np.bool_]
 
+    @classmethod
+    def of(
+        cls, boxes: Sequence[Box], contours: Sequence[Contour], levels: NDArray[np.uint8], cut: bool
+    ) -> "Proposals":
+        """Regions by their outlines, int32 (k, 2) or (k, 1, 2) each, all or none of them cut."""
+        lengths = np.array([len(contour) for contour in contours], np.int64)
+        joined = np.concatenate(contours) if contours else np.zeros(0, np.int32)
+        return cls(
+            np.array(boxes, np.int32).reshape(-1, 4),
+            np.asarray(joined, np.int32).reshape(-1, 2),
+            lengths.cumsum() - lengths,
+            lengths,
+            levels,
+            np.full(len(contours), cut),
+        )
+
     def __len__(self) -> int:
-        return len(self.contours)
+        return len(self.boxes)
+
+    @property
+    def contours(self) -> tuple[Contour, ...]:
+        """n arrays int32 (k, 2): the outlines."""
+        starts, ends = self.starts.tolist(), (self.starts + self.lengths).tolist()
+        return tuple(self.points[start:end] for start, end in zip(starts, ends, strict=True))
+
+    def contour(self, number: int) -> Contour:
+        """One of the outlines, int32 (k, 2)."""
+        start = int(self.starts[number])
+        return self.points[start : start + int(self.lengths[number])]
 
     def box(self, number: int) -> Box:
         """One of the boxes."""
@@ -78,14 +92,22 @@ class Proposals:
 
     def taken(self, numbers: NDArray[np.intp]) -> "Proposals":
         """Some of the regions, in that order."""
-        contours = tuple(self.contours[number] for number in numbers)
-        return Proposals(self.boxes[numbers], contours, self.levels[numbers], self.cut[numbers])
+        return Proposals(
+            self.boxes[numbers],
+            self.points,
+            self.starts[numbers],
+            self.lengths[numbers],
+            self.levels[numbers],
+            self.cut[numbers],
+        )
 
     def joined(self, others: "Proposals") -> "Proposals":
         """These regions, then others."""
         return Proposals(
             np.concatenate([self.boxes, others.boxes]),
-            self.contours + others.contours,
+            np.concatenate([self.points, others.points]),
+            np.concatenate([self.starts, others.starts + len(self.points)]),
+            np.concatenate([self.lengths, others.lengths]),
             np.concatenate([self.levels, others.levels]),
             np.concatenate([self.cut, others.cut]),
         )
@@ -117,21 +139,46 @@ Distinct = Callable[[NDArray[np.int32], int], NDArray[np.intp]]
 
 def plain_distinct(boxes: NDArray[np.int32], most: int) -> NDArray[np.intp]:
     """A `Distinct` by NumPy."""
-    low, high = boxes[:, :2], boxes[:, :2] + boxes[:, 2:]
-    sides = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
-    np.maximum(sides, 0, out=sides)
-    both = sides[..., 0] * sides[..., 1]
+    sides = []
+    for begin, length in ((boxes[:, 0], boxes[:, 2]), (boxes[:, 1], boxes[:, 3])):
+        end = begin + length
+        side = np.minimum(end[:, None], end)
+        side -= np.maximum(begin[:, None], begin)
+        sides.append(np.maximum(side, 0, out=side))
+    both = sides[0] * sides[1]
     areas = boxes[:, 2] * boxes[:, 3]
     # both / union > SAME_HUNDREDTHS / 100 in whole numbers.
     same = (100 + SAME_HUNDREDTHS) * both > SAME_HUNDREDTHS * (areas[:, None] + areas)
     return np.array(keep_distinct(same, range(len(boxes)), most), np.intp)
 
 
-def whole_regions(skin: Image, levels: int = LEVELS, distinct: Distinct = plain_distinct) -> Proposals:
+@dataclass(frozen=True, slots=True)
+class RegionLoops:
+    """What passes over the levels of the skin map, over boxes and over the pixels of regions.
+
+    whole: (skin, levels) -> `whole_regions`. distinct: see `Distinct`. forearms: regions -> `without_forearms`.
+    overlaps: boxes -> float64 (n, n), IoU of every two. colours: (picture, regions) -> float64 (n, 3), mean blue, green
+        and red inside each outline, 0 to 255.
+    """
+
+    whole: Callable[[Image, int], Proposals]
+    distinct: Distinct
+    forearms: Callable[[Proposals], Proposals]
+    overlaps: Callable[[NDArray[np.int32]], NDArray[np.float64]]
+    colours: Callable[[Image, Proposals], NDArray[np.float64]]
+
+
+def whole_regions(skin: Image, levels: int = LEVELS, loops: RegionLoops | None = None) -> Proposals:
     """Regions of the skin map, uint8 (h, w), at any level that may be hands, forearms and all.
 
-    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range.
+    levels: thresholds over the skin map, 2 to 256; of 2 one alone cuts, in the middle of the range. loops: None for
+    `PLAIN`; any gives the same regions.
     """
+    return (loops or PLAIN).whole(skin, levels)
+
+
+def plain_whole(skin: Image, levels: int, distinct: Distinct = plain_distinct) -> Proposals:
+    """`RegionLoops.whole` by OpenCV."""
     found: list[Contour] = []
     boxes: list[Box] = []
     thresholds: list[int] = []
@@ -146,120 +193,44 @@ def whole_regions(skin: Image, levels: int = LEVELS, distinct: Distinct = plain_
         # The reddest regions come first, so specks at the low levels are what a flood loses.
         if len(found) >= MOST_LOOKED_AT or outlines >= MOST_OUTLINES:
             break
-    return _distinct(found, boxes, thresholds, [False] * len(found), distinct)
-
-
-def _distinct(
-    contours: list[Contour], boxes: list[Box], levels: list[int], cut: list[bool], distinct: Distinct
-) -> Proposals:
-    """The first of each group of regions whose boxes nearly agree, as many as are wanted."""
     looked_at = np.array(boxes[:MOST_LOOKED_AT], np.int32).reshape(-1, 4)
     kept = distinct(looked_at, MOST)
-    return Proposals(
-        boxes=looked_at[kept],
-        contours=tuple(np.asarray(contours[index], np.int32).reshape(-1, 2) for index in kept),
-        levels=np.array(levels, np.uint8)[kept],
-        cut=np.array(cut, bool)[kept],
-    )
+    of_levels = np.array(thresholds, np.uint8)[kept]
+    return Proposals.of([boxes[index] for index in kept], [found[index] for index in kept], of_levels, False)
 
 
-def without_forearms(regions: Proposals, numbers: Iterable[int]) -> Proposals:
-    """Those of some regions whose forearm can be cut off, without it."""
-    hands = {number: cut_forearm(regions.contours[number], regions.box(number)) for number in numbers}
-    cut = {number: hand for number, hand in hands.items() if hand is not None}
-    boxes = [cv2.boundingRect(hand) for hand in cut.values()]
-    return Proposals(
-        np.array(boxes, np.int32).reshape(-1, 4),
-        tuple(cut.values()),
-        regions.levels[list(cut)],
-        np.ones(len(cut), bool),
-    )
+def without_forearms(regions: Proposals, loops: RegionLoops | None = None) -> Proposals:
+    """Those of the regions whose forearm can be cut off, without it. loops: None for `PLAIN`."""
+    return (loops or PLAIN).forearms(regions)
+
+
+def plain_forearms(regions: Proposals) -> Proposals:
+    """`RegionLoops.forearms` by OpenCV."""
+    hands = [cut_forearm(regions.contour(number), regions.box(number)) for number in range(len(regions))]
+    cut = [number for number, hand in enumerate(hands) if hand is not None]
+    left = [hand for hand in hands if hand is not None]
+    return Proposals.of([cv2.boundingRect(hand) for hand in left], left, regions.levels[cut], True)  # type: ignore[misc]
+
+
+def _plain_overlaps(boxes: NDArray[np.int32]) -> NDArray[np.float64]:
+    return pairwise_iou(boxes, boxes)
+
+
+def _plain_colours(picture: Image, regions: Proposals) -> NDArray[np.float64]:
+    means = np.empty((len(regions), 3))
+    for number in range(len(regions)):
+        x, y, width, height = box = regions.box(number)
+        mask = fill_contour(regions.contour(number), box)
+        means[number] = cv2.mean(picture[y : y + height, x : x + width], mask)[:3]
+    return means
+
+
+PLAIN: Final = RegionLoops(plain_whole, plain_distinct, plain_forearms, _plain_overlaps, _plain_colours)
 
 
 def propose(colour: ColourMap, levels: int = LEVELS) -> Proposals:
     """Regions of the skin map that may be hands, and all of them without their forearms where one was found."""
     whole = whole_regions(colour.skin, levels)
-    hands = without_forearms(whole, range(len(whole)))
+    hands = without_forearms(whole)
     every = whole.joined(hands)
-    boxes = [every.box(index) for index in range(len(every))]
-    return _distinct(list(every.contours), boxes, every.levels.tolist(), every.cut.tolist(), plain_distinct)
-
-
-def fill_contour(contour: Contour, box: Box, border: int = 0) -> Image:
-    """uint8 (height + 2 border, width + 2 border): 255 inside the outline, `box` placed in the middle."""
-    x, y, width, height = box
-    mask = np.zeros((height + 2 * border, width + 2 * border), np.uint8)
-    cv2.drawContours(mask, [contour.reshape(-1, 1, 2)], -1, 255, cv2.FILLED, offset=(border - x, border - y))
-    return mask
-
-
-def palm_circle(mask: Image) -> tuple[tuple[int, int], float]:
-    """Centre (x, y) and radius in pixels of the largest circle inside a mask with an empty border.
-
-    Turned, enlarged, mirrored: with the mask, to a pixel; of several largest circles the first from the top counts.
-    """
-    distance = cv2.distanceTransform(mask, cv2.DIST_L2, 3)
-    _, radius, _, centre = cv2.minMaxLoc(distance)
-    return (centre[0], centre[1]), radius
-
-
-def arm_direction(mask: Image, centre: tuple[int, int], radius: float) -> Point | None:
-    """Unit vector (x, y) from the palm's centre along the forearm; None where there is none.
-
-    Enlarged and mirrored: with the mask. It looks downwards alone, so it does not follow a turn by more than about 60
-    degrees.
-    """
-    top = int(centre[1] + ARM_TOP * radius)
-    if top >= len(mask):
-        return None
-    arm = mask[top:].copy()
-    cv2.circle(arm, (centre[0], centre[1] - top), round(ARM_RING * radius), 0, cv2.FILLED)
-    moments = cv2.moments(arm, binaryImage=True)
-    area = moments["m00"]
-    if area < max(LEAST_REMAINDER * cv2.countNonZero(mask), 1.0):
-        return None
-    across, down = moments["m10"] / area - centre[0], moments["m01"] / area - centre[1] + top
-    length = math.hypot(across, down)
-    # Rests on both sides of a palm may balance each other: then no arm leaves it.
-    return (across / length, down / length) if length > 0.0 else None
-
-
-def cut_forearm(contour: Contour, box: Box) -> Contour | None:
-    """The outline without what lies beyond the wrist, int32 (k, 2); None where the region ends there already."""
-    mask = fill_contour(contour, box, border=1)
-    centre, radius = palm_circle(mask)
-    direction = arm_direction(mask, centre, radius)
-    if direction is None:
-        return None
-    whole = cv2.countNonZero(mask)
-    wrist = WRIST_DISTANCE * radius
-    _erase_beyond(mask, (centre[0] + wrist * direction[0], centre[1] + wrist * direction[1]), direction)
-    if whole - cv2.countNonZero(mask) < LEAST_REMAINDER * whole:
-        return None
-    # Of the outline in the picture's pixels: the mask begins a pixel before the box.
-    parts = cv2.findContours(mask, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE, offset=(box[0] - 1, box[1] - 1))[
-        0
-    ]
-    largest = max(parts, key=cv2.contourArea, default=None)
-    if largest is None or cv2.boundingRect(largest)[3] < LEAST_HEIGHT:
-        return None
-    return np.asarray(largest, np.int32).reshape(-1, 2)
-
-
-def _erase_beyond(mask: Image, point: Point, direction: Point) -> None:
-    """Set to 0 what lies past the line through `point` across `direction`."""
-    (x, y), (along_x, along_y) = point, direction
-    far = float(sum(mask.shape))
-    corners = np.array(
-        [
-            (round(x + far * step_x), round(y + far * step_y))
-            for step_x, step_y in (
-                (along_y, -along_x),
-                (-along_y, along_x),
-                (-along_y + along_x, along_x + along_y),
-                (along_y + along_x, -along_x + along_y),
-            )
-        ],
-        np.int32,
-    )
-    cv2.fillConvexPoly(mask, corners, 0)
+    return every.taken(plain_distinct(every.boxes[:MOST_LOOKED_AT], MOST))

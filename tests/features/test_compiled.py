@@ -5,6 +5,7 @@ import logging
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import cv2
@@ -14,11 +15,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lightgesture.actions.decode import SAMPLE
+from lightgesture.benchmarks.bad_frames import SCENES
 from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
-from lightgesture.features.find import cells
+from lightgesture.features.find import bank, cells, proposals
+from lightgesture.features.find.candidates import pair_numbers
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
-from lightgesture.features.find.proposals import plain_distinct, whole_regions
+from lightgesture.features.find.proposals import plain_distinct, whole_regions, without_forearms
 from lightgesture.features.find.selector_file import load_classical
 from lightgesture.features.skin_map import skin_map
 from lightgesture.sources import open_source
@@ -35,6 +38,14 @@ def _textured(seed, height, width, light):
     coarse = rng.integers(0, 256, (5, 6, 3)).astype(np.float32)
     picture = cv2.resize(coarse, (width, height)).reshape(height, width, 3) * light
     return np.clip(picture + rng.normal(0, 4, picture.shape), 0, 255).astype(np.uint8)
+
+
+def _assert_same_regions(one, other):
+    assert one.boxes.tobytes() == other.boxes.tobytes()
+    assert one.levels.tobytes() == other.levels.tobytes()
+    assert one.cut.tobytes() == other.cut.tobytes()
+    for mine, theirs in zip(one.contours, other.contours, strict=True):
+        assert mine.tobytes() == theirs.tobytes()
 
 
 def _assert_same_candidates(one, other):
@@ -62,11 +73,53 @@ def test_any_picture_gives_the_same_bytes(fast, seed, height, width, light):
     assert skin_map(picture, fast.skin).tobytes() == skin.tobytes()
     sums = cells.channel_sums(picture, skin)
     assert cells.channel_sums(picture, skin, fast.cells).tobytes() == sums.tobytes()
-    regions, same = whole_regions(skin), whole_regions(skin, distinct=fast.distinct)
-    assert regions.boxes.tobytes() == same.boxes.tobytes()
+    regions, same = whole_regions(skin), whole_regions(skin, loops=fast.regions)
+    _assert_same_regions(regions, same)
     size = width, height
     rows = cells.describe(sums, regions, size)
     assert cells.describe(sums, regions, size, fast.cells).tobytes() == rows.tobytes()
+
+
+@given(
+    seed=st.integers(0, 2**31),
+    height=st.integers(1, 90),
+    width=st.integers(1, 90),
+    grain=st.integers(1, 12),
+    levels=st.sampled_from([2, 7, 24, 128, 200, 256]),
+)
+@settings(max_examples=60, deadline=None)
+def test_any_map_has_the_same_regions_within_regions(fast, seed, height, width, grain, levels):
+    """Rings, specks in holes and regions that touch by a corner, from noise to blobs."""
+    coarse = np.random.default_rng(seed).integers(0, 256, (height // grain + 1, width // grain + 1))
+    skin = cv2.resize(coarse.astype(np.uint8), (width, height)).reshape(height, width)
+    regions = whole_regions(skin, levels)
+    _assert_same_regions(regions, whole_regions(skin, levels, fast.regions))
+    hands = without_forearms(regions)
+    _assert_same_regions(hands, without_forearms(regions, fast.regions))
+    every = regions.joined(hands)
+    size = width, height
+    assert fast.cells.shapes(every, size).tobytes() == cells.PLAIN.shapes(every, size).tobytes()
+    assert fast.regions.overlaps(every.boxes).tobytes() == proposals.PLAIN.overlaps(every.boxes).tobytes()
+    if len(every):
+        parts = (
+            every.points,
+            every.starts,
+            every.lengths,
+            bank.DescriptorSettings(points=levels // 4 + 8, harmonics=3),
+        )
+        assert bank.describe_points(*parts, fast.bank).tobytes() == bank.describe_points(*parts).tobytes()
+    picture = _textured(seed, height, width, 1.0)
+    colours = proposals.PLAIN.colours(picture, every)
+    assert fast.regions.colours(picture, every).tobytes() == colours.tobytes()
+
+
+def test_a_region_larger_than_any_of_a_working_picture_is_cut_alike(fast):
+    skin = np.zeros((400, 400), np.uint8)
+    cv2.circle(skin, (150, 120), 80, 255, cv2.FILLED)
+    cv2.rectangle(skin, (110, 120), (190, 350), 255, cv2.FILLED)
+    regions = whole_regions(skin)
+    assert len(without_forearms(regions)) == 1
+    _assert_same_regions(without_forearms(regions), without_forearms(whole_regions(skin), fast.regions))
 
 
 @given(
@@ -79,7 +132,7 @@ def test_any_picture_gives_the_same_bytes(fast, seed, height, width, light):
 @settings(max_examples=60, deadline=None)
 def test_any_boxes_are_parted_and_described_alike(fast, boxes, most):
     table = np.array(boxes, np.int32).reshape(-1, 4)
-    np.testing.assert_array_equal(fast.distinct(table, most), plain_distinct(table, most))
+    np.testing.assert_array_equal(fast.regions.distinct(table, most), plain_distinct(table, most))
     picture = _textured(1, 120, 160, 1.0)
     sums = cells.channel_sums(picture, skin_map(picture))
     assert fast.cells.cells(sums, table).tobytes() == cells.PLAIN.cells(sums, table).tobytes()
@@ -98,6 +151,48 @@ def test_frames_of_a_clip_give_the_same_candidates(fast):
             _assert_same_candidates(one, quick.process(colour))
             found += len(one.regions)
     assert found > 10
+
+
+def test_the_worst_frames_give_the_same_candidates(fast):
+    parts = load_classical()
+    plain, quick = ClassicalSelector(parts), ClassicalSelector(parts, fast)
+    clip = [_textured(seed, 480, 640, 0.8) for seed in (5, 6)]
+    for scene in SCENES.values():
+        for image in scene(clip):
+            colour = ColourStage().process(image)
+            _assert_same_candidates(plain.process(colour), quick.process(colour))
+
+
+@given(
+    rows=st.lists(
+        st.tuples(
+            *[st.integers(0, 150)] * 2,
+            *[st.integers(1, 110)] * 2,
+            *[st.floats(0.0, 1.0, width=32)] * 5,
+        ),
+        min_size=2,
+        max_size=8,
+    ),
+    face=st.sampled_from([None, (70.0, 40.0)]),
+)
+@settings(max_examples=100, deadline=None)
+def test_any_pairs_have_the_same_numbers(fast, rows, face):
+    table = np.array(rows, np.float64)
+    pairs, numbers = pair_numbers(table, (160, 120), face)
+    same, others = pair_numbers(table, (160, 120), face, numbers=fast.pairs)
+    assert same.tobytes() == pairs.tobytes()
+    assert others.tobytes() == numbers.tobytes()
+
+
+@pytest.mark.parametrize("is_fast", [False, True])
+def test_threads_and_sizes_do_not_share_what_is_kept_of_a_frame(fast, is_fast):
+    selector = ClassicalSelector(load_classical(), fast if is_fast else None)
+    sizes = (120, 160), (90, 200), (160, 120), (120, 160)
+    colours = [ColourStage().process(_textured(seed, *sizes[seed % 4], 1.0)) for seed in range(12)]
+    alone = [ClassicalSelector(load_classical(), fast if is_fast else None).process(one) for one in colours]
+    with ThreadPoolExecutor(4) as pool:
+        for one, other in zip(alone, pool.map(selector.process, colours), strict=True):
+            _assert_same_candidates(one, other)
 
 
 def test_read_only_frames_and_views_are_taken(fast):
@@ -174,6 +269,20 @@ def test_the_cache_lies_in_the_users_folder(monkeypatch, tmp_path):
     assert compiled.cache_folder() == tmp_path / "lightgesture" / "numba"
     monkeypatch.setenv("XDG_CACHE_HOME", "relative")
     assert compiled.cache_folder().is_absolute()
+
+
+def test_loops_with_other_numbers_are_compiled_anew(monkeypatch, tmp_path):
+    """Numba itself sees only whether the file of a loop has changed."""
+    for name in ("find/kernels.py", "find/other_kernels.py", "skin_map.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("MOST = 96")
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    monkeypatch.setattr(compiled, "NUMBERS_FROM", ("skin_map.py",))
+    versions = [compiled.version_of_loops()]
+    for name in ("find/other_kernels.py", "skin_map.py"):
+        (tmp_path / name).write_text("MOST = 95")
+        versions.append(compiled.version_of_loops())
+    assert len(set(versions)) == 3
 
 
 def test_the_learned_choice_loads_no_numba():

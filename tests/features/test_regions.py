@@ -11,12 +11,10 @@ from lightgesture.features import find_hands
 from lightgesture.features.colour import ColourStage, reduce_picture
 from lightgesture.features.find import cells, proposals
 from lightgesture.features.find.classical import ARMS, STANDING_OUT, Loops, Scene, Scorer
+from lightgesture.features.find.forearms import cut_forearm, palm_circle
 from lightgesture.features.find.proposals import (
     MOST,
-    cut_forearm,
-    palm_circle,
     propose,
-    whole_regions,
 )
 from lightgesture.features.find.selector import choose, load_selector
 from lightgesture.features.find.selector_file import load_classical
@@ -121,7 +119,7 @@ def test_the_work_for_the_worst_frames_is_bounded(name, monkeypatch):
     colour = ColourStage().process(WORST[name]())
     scene = Scene.of(colour, Loops())
     monkeypatch.setattr(proposals.cv2, "findContours", counted_contours)
-    regions = whole_regions(scene.skin, distinct=counted)
+    regions = proposals.plain_whole(scene.skin, proposals.LEVELS, counted)
     assert looked_at[0] <= proposals.MOST_LOOKED_AT
     # One level may go over the bound before it is seen.
     assert sum(outlines[:-1]) < proposals.MOST_OUTLINES

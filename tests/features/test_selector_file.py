@@ -151,6 +151,17 @@ def test_of_a_file_of_before_nets_can_learn_on_and_the_classical_choice_serves(t
     assert (locator.nodes, refiner.nodes) == (bundled.locator.nodes, bundled.refiner.nodes)
 
 
+@pytest.mark.parametrize("left", [[1, 0, 2], [0, 1, 2], [2, 1, 2]], ids=["circle", "root", "both"])
+def test_a_tree_that_leads_to_a_node_twice_is_refused(left):
+    """It would be laid out for ever, or many times over."""
+    column, number = np.zeros((1, 3), np.int16), np.zeros((1, 3), np.float32)
+    right = np.array([[2, 1, 2]], np.int16)
+    trees = Trees(column, number, np.array([left], np.int16), right, number, 0.0, 2)
+    with pytest.raises(ValueError, match="twice"):
+        trees.check(1)
+    replace(trees, left=np.array([[1, 1, 2]], np.int16)).check(1)
+
+
 def test_trees_that_point_outside_are_refused():
     ones = np.ones((1, 1), np.int16)
     trees = Trees(ones * 0, np.zeros((1, 1), np.float32), ones, ones, np.zeros((1, 1), np.float32), 0.0, 1)

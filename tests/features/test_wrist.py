@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lightgesture.features.find.proposals import (
+from lightgesture.features.find.forearms import (
     LEAST_HEIGHT,
     WRIST_DISTANCE,
     arm_direction,

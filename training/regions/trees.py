@@ -148,7 +148,7 @@ class Glanced:
         """float32 (n,): IoU of each region with the best hand, with its forearm or without it, whichever is more."""
         found = overlaps_with(self.picture, self.colour, self.regions)
         for number in range(len(self.regions)) if self.picture.boxes else ():
-            hand = without_forearms(self.regions, [number])
+            hand = without_forearms(self.regions.taken(np.array([number])))
             if len(hand):
                 found[number] = max(found[number], overlaps_with(self.picture, self.colour, hand)[0])
         return found
@@ -160,7 +160,7 @@ def glance(pictures: Iterable[BoxedPicture], loops: Loops) -> Iterable[Glanced]:
     for picture in pictures:
         colour = stage.process(picture.image)
         scene = Scene.of(colour, loops)
-        regions = whole_regions(scene.skin, distinct=loops.distinct)
+        regions = whole_regions(scene.skin, loops=loops.regions)
         if len(regions):
             rows = cells.describe(scene.sums, regions, scene.size, loops.cells)
             yield Glanced(picture, colour, scene, regions, rows)
@@ -186,7 +186,7 @@ def fit_regions(
     for one in glance(pictures(), loops):
         scores = flat.scores(one.rows, loops.walk)
         seen, numbers = standing_out(one.scene, one.regions, one.rows, scores, loops)
-        rows.append(with_bank(numbers, seen, bank))
+        rows.append(with_bank(numbers, seen, bank, loops.bank))
         targets.append(overlaps_with(one.picture, one.colour, seen))
     return first, fit_trees(rows, targets, REGION_TREES, seed)
 
@@ -211,7 +211,7 @@ def fit_pairs(
     return ClassicalParts(first, second, fit_trees(rows, targets, PAIR_TREES, seed), bank)
 
 
-def _lower_of_both(overlaps: Float, pairs: Sequence[tuple[int, int]]) -> Float:
+def _lower_of_both(overlaps: Float, pairs: NDArray[np.intp]) -> Float:
     """float32 (pairs,): the lower IoU of the two regions of each pair, given that of each region."""
     return np.array([min(overlaps[one], overlaps[other]) for one, other in pairs], np.float32)
 

@@ -23,14 +23,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NPZ",
         help="model whose small net is kept (default: the bundled one)",
     )
-    parser.add_argument(
-        "--teacher",
-        action="append",
-        default=[],
-        metavar="NPZ",
-        help="model whose second look teaches the larger net in the place of the labels; repeatable: of several the "
-        "mean teaches, and the net goes on from the first",
-    )
     parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
     parser.add_argument(
         "--steps", type=positive, default=20000, metavar="N", help="of the larger net (default: 20000)"
@@ -58,7 +50,6 @@ def run(args: argparse.Namespace) -> int:
 
     training = replace(net_training(args), teacher_steps=args.steps)
     out, first = model_path(args.out), SHIPPED.get(args.first, Path(args.first))
-    teachers = [SHIPPED.get(name, Path(name)) for name in args.teacher]
     return train_and_tell(
-        lambda progress: train_look_to_file(training, first, out, progress, teachers), out, args.quiet
+        lambda progress: train_look_to_file(training, first, out, progress), out, args.quiet
     )

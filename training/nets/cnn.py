@@ -207,7 +207,8 @@ def learn(
     samples = HandSamples(pool, chosen, classes, MARGIN)
     if training.teachers:
         how = replace(settings, steps=training.teacher_steps)
-        samples = teach(samples, training.teachers, how, seed, training.jobs, folder, progress)
+        answers = teach(samples, training.teachers, how, seed, training.jobs, folder, progress)
+        samples = samples.with_answers(answers)
     length = contour_length(CONTOUR) if training.contours else 0
     outlines = pool.contours[chosen, :length].astype(np.float32)
     scale = OutlineScale(outlines.mean(axis=0), outlines.std(axis=0) + np.float32(1e-3))

@@ -19,7 +19,6 @@ from lightgesture.training.nets.hand_samples import HandBatch, HandSamples, stan
 from lightgesture.training.nets.landmark_task import LANDMARKS, landmark_loss, with_head, without_head
 from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, train_net
 from lightgesture.training.nets.quantise import quantise
-from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 STANDARD_RANGE = (-3.0, 3.0)
@@ -111,11 +110,9 @@ def train_hand_net(
     checkpoint: Path,
     progress: Callable[[str], None],
     stopping: threading.Event | None = None,
-    start: IntegerNetwork | None = None,
 ) -> TorchNetwork:
     """The trained net in floating point; goes on at `checkpoint` where there is one. scale: None for a net without
-    outline. stopping: see `train_net`. start: a net of the same layers to go on from, in smaller steps; None to keep
-    the net's own weights.
+    outline. stopping: see `train_net`.
 
     It takes one thread: a step of so small a net is no quicker on two, and so no number of cores changes the result.
     """
@@ -135,12 +132,7 @@ def train_hand_net(
         return far
 
     warm_up = max(1, min(LONGEST_WARM_UP, settings.steps // 4))
-    share = 1.0
-    if start is not None:
-        start_from(net, start, batch(np.random.default_rng((seed, settings.steps)))[0])
-        share = STARTED
-    rates = share * RATE, share * MATRIX_RATE
-    loop = LoopSettings(settings.steps, *rates, warm_up=warm_up, precision=settings.precision)
+    loop = LoopSettings(settings.steps, RATE, MATRIX_RATE, warm_up=warm_up, precision=settings.precision)
     return train_net(net, batch, loss, loop, seed, checkpoint, progress, stopping)
 
 

@@ -29,7 +29,7 @@ LARGEST_ERASED: Final = 0.4
 @dataclass(frozen=True, slots=True, eq=False)
 class HandBatch:
     """patches: float32 (n, size, size, 3), standardised. contours: float32 (n, c), as measured. truth: int64 (n,).
-    answers: float32 (n, classes), answers of other nets to the same patches, None where nobody gave any.
+    answers: float32 (n, classes), scores of other nets for the same patches, None where nobody gave any.
     landmarks: float32 (n, 42), x and y of each in turn, sides of the patch from its middle, NaN where unknown or
     covered; None where the pool has none."""
 
@@ -100,14 +100,10 @@ class HandSamples:
         other._answers = answers
         return other
 
-    def patches(self, first: int, last: int) -> NDArray[np.uint8]:
-        """The chosen rows `first` to `last` as they are, neither shifted nor covered: uint8 (n, size, size, 3)."""
-        inner = slice(self._margin, self._margin + self.size)
-        return np.asarray(self._pool.patches[self._rows[first:last]][:, inner, inner], np.uint8)
-
     def middles(self, first: int, last: int) -> Float:
-        """The same standardised, float32."""
-        return standardised(self.patches(first, last))
+        """The chosen rows `first` to `last` as they are, neither shifted nor covered: (n, size, size, 3)."""
+        inner = slice(self._margin, self._margin + self.size)
+        return standardised(np.asarray(self._pool.patches[self._rows[first:last]][:, inner, inner]))
 
     def draw_rows(self, random: Random, count: int) -> NDArray[np.int64]:
         """Which of the chosen rows a batch is made of."""

@@ -6,13 +6,13 @@ changes.
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 from lightgesture.errors import InputError, UsageError
-from lightgesture.models import Classifier, load_classifier
+from lightgesture.models import load_classifier
 from lightgesture.models.cnn import CnnClassifier
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
@@ -26,16 +26,11 @@ from lightgesture.training.samples import in_order
 
 
 def train_look_to_file(
-    training: CnnTraining,
-    first: Path,
-    out: Path,
-    progress: Callable[[str], None],
-    teachers: Sequence[Path] = (),
+    training: CnnTraining, first: Path, out: Path, progress: Callable[[str], None]
 ) -> dict[str, Any]:
     """Train, write `out` and the card beside it (suffix .json), and return the card.
 
-    training: its teachers' steps are those of the larger net. first: model file of a net. teachers: model files whose
-    second looks teach it, in the place of the labels; it goes on from the first of them. What is done lies in a folder
+    training: its teachers' steps are those of the larger net. first: model file of a net. What is done lies in a folder
     beside `out`, as in `train_cnn_to_file`. Raises InputError, ModelError, UsageError.
     """
     need_torch()
@@ -45,26 +40,18 @@ def train_look_to_file(
         second_section,
         with_second_look,
     )
-    from lightgesture.training.nets.teachers import taught_by
 
-    known, teaching = load_classifier(first), [load_classifier(path) for path in teachers]
+    known = load_classifier(first)
     # Before the pool is drawn, which takes minutes.
     classes = in_order(row.token for row in read_rows(training.data, training.without))
     if not isinstance(known, CnnClassifier) or known.classes != classes:
         raise UsageError(f"{first}: is no net of the classes {', '.join(classes)}; train one with train cnn")
-    looks = [_second_look(path, model, classes) for path, model in zip(teachers, teaching, strict=True)]
     small_net = small_net_section(first)
-    digests = [sha256_of(path) for path in teachers]
-    drawn = draw(training, out, progress, first=sha256_of(first), teachers=" ".join(digests))
+    drawn = draw(training, out, progress, first=sha256_of(first))
     progress = drawn.spent.kept_by(progress)
     samples = HandSamples(drawn.pool, drawn.learnt_from, drawn.classes, MARGIN)
     how = replace(net_settings(training), steps=training.teacher_steps)
-    start = None
-    if looks:
-        progress("asking the nets that teach")
-        samples = taught_by(looks, samples, drawn.folder)
-        start = None if (second := looks[0].model.second) is None else second.network
-    larger = first_teacher(samples, how, training.seed, drawn.folder, progress, start)
+    larger = first_teacher(samples, how, training.seed, drawn.folder, progress)
     hands = held_out_hands(known.model, drawn.originals, drawn.pool, drawn.kept)
     model = with_second_look(known.model, larger, hands)
     card = {
@@ -82,7 +69,6 @@ def train_look_to_file(
         "training": {
             "seed": training.seed,
             "steps": {"larger_net": training.teacher_steps},
-            "taught_by_models_of_sha256": digests,
             "settings": {"pool": asdict(training.pool), "net": asdict(how)},
             "seconds": drawn.spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
@@ -92,15 +78,6 @@ def train_look_to_file(
     write_cnn_model(model, out)
     write_json(card, out.with_suffix(".json"))
     return card
-
-
-def _second_look(path: Path, model: Classifier, classes: tuple[str, ...]) -> CnnClassifier:
-    """A model that teaches. Raises UsageError for one that cannot."""
-    if not isinstance(model, CnnClassifier) or model.classes != classes or model.model.second is None:
-        raise UsageError(
-            f"{path}: has no second look of the classes {', '.join(classes)}; make one with train look"
-        )
-    return model
 
 
 def small_net_section(first: Path) -> dict[str, Any]:

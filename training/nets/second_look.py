@@ -29,16 +29,12 @@ NO_OUTLINE: Final = OutlineScale(np.zeros(0, np.float32), np.zeros(0, np.float32
 
 
 def first_teacher(
-    samples: HandSamples,
-    settings: NetSettings,
-    seed: int,
-    folder: Path,
-    progress: Progress,
-    start: IntegerNetwork | None = None,
+    samples: HandSamples, settings: NetSettings, seed: int, folder: Path, progress: Progress
 ) -> IntegerNetwork:
-    """The first teacher; goes on where it was left in `folder`. start: a net of the same layers to begin with."""
-    learnt = teacher(samples, settings, seed, folder, progress, start)
-    return to_integers(learnt, samples, NO_OUTLINE, settings, seed)
+    """The first teacher; goes on where it was left in `folder`."""
+    return to_integers(
+        teacher(samples, settings, seed, folder, progress), samples, NO_OUTLINE, settings, seed
+    )
 
 
 def with_second_look(model: CnnModel, network: IntegerNetwork, hands: HeldOutHands) -> CnnModel:

@@ -5,20 +5,16 @@ anew at every step would take longer than the step itself.
 """
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import FIRST_EXCEPTION, ThreadPoolExecutor, wait
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 
 from lightgesture.errors import UsageError
-from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.types import Float
-from lightgesture.models.calibration import softmax
-from lightgesture.models.cnn import PATCH, SCORES, CnnClassifier
+from lightgesture.models.cnn import PATCH, SCORES
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.architectures import teacher_nodes
 from lightgesture.training.nets.hand_net import NetSettings, make_net, tells_landmarks, train_hand_net
@@ -26,11 +22,8 @@ from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.nets.net_training import net_outputs
 from lightgesture.training.nets.torch_network import TorchNetwork
 
-ASKED_AT_ONCE: Final = 256
-ANSWERS: Final = "answers.npy"
-"""Of all teachers together, float16 (rows, classes), in the folder of a training."""
-LEAST_PROBABILITY: Final = 1e-4
-"""Of a class, below which the teachers say no more of it."""
+Answers = NDArray[np.float16]
+ASKED_AT_ONCE = 256
 
 
 def teach(
@@ -41,12 +34,12 @@ def teach(
     jobs: int,
     folder: Path,
     progress: Callable[[str], None],
-) -> HandSamples:
-    """The samples with the mean scores of `count` nets for every chosen row; what is in `folder` already is used.
+) -> Answers:
+    """Mean scores of `count` nets for every chosen row, (rows, classes); what is in `folder` already is used.
 
     The nets differ in their first weights and in what they draw. jobs: of them that learn at a time, a thread each.
     """
-    path = folder / ANSWERS
+    path = folder / "answers.npy"
     if not path.exists():
         # Weights are drawn from one generator of the process, so before the threads begin.
         nets = [_teacher_net(samples, settings, seed + number) for number in range(count)]
@@ -69,57 +62,22 @@ def teach(
                 # Ctrl-C reaches this thread alone, and a failure one other; else the rest would learn to the end.
                 stopping.set()
         total = sum((one.result() for one in learning), np.zeros((len(samples), len(samples.classes))))
-        _keep(path, total / count)
-    return _with_answers(samples, path)
-
-
-def taught_by(models: Sequence[CnnClassifier], samples: HandSamples, folder: Path) -> HandSamples:
-    """The samples with what the second looks of models, one or more, say of them together: the logarithm of their mean
-    probability. It is kept in `folder`."""
-    path = folder / ANSWERS
-    if not path.exists():
-        mean = np.mean([_second_probabilities(model, samples) for model in models], axis=0)
-        _keep(path, np.log(np.maximum(mean, LEAST_PROBABILITY)))
-    return _with_answers(samples, path)
-
-
-def _second_probabilities(model: CnnClassifier, samples: HandSamples) -> Float:
-    second = model.model.second
-    assert second is not None
-    parts = (
-        model.second_scores(samples.patches(first, first + ASKED_AT_ONCE))
-        for first in range(0, len(samples), ASKED_AT_ONCE)
-    )
-    return np.concatenate([softmax(scores, second.temperature) for scores in parts])
-
-
-def _keep(path: Path, answers: NDArray[np.floating]) -> None:
-    with replacing(path) as temporary, temporary.open("wb") as stream:
-        np.save(stream, answers.astype(np.float16))
-
-
-def _with_answers(samples: HandSamples, path: Path) -> HandSamples:
+        with replacing(path) as temporary, temporary.open("wb") as stream:
+            np.save(stream, (total / count).astype(np.float16))
     answers = np.asarray(np.load(path), np.float16)
     if answers.shape != (len(samples), len(samples.classes)):
         raise UsageError(
             f"{path}: holds answers about other patches; remove it and run the same command again"
         )
-    return samples.with_answers(answers)
+    return answers
 
 
 def teacher(
-    samples: HandSamples,
-    settings: NetSettings,
-    seed: int,
-    folder: Path,
-    progress: Callable[[str], None],
-    start: IntegerNetwork | None = None,
+    samples: HandSamples, settings: NetSettings, seed: int, folder: Path, progress: Callable[[str], None]
 ) -> TorchNetwork:
-    """The first of the nets that teach, from `folder`, where `teach` left it, or trained on. start: a net of the same
-    layers from which it goes on."""
+    """The first of the nets that teach, from `folder`, where `teach` left it, or trained on."""
     net = _teacher_net(samples, settings, seed)
-    checkpoint = folder / "teacher1.pt"
-    return train_hand_net(net, samples, None, settings, seed, checkpoint, progress, start=start)
+    return train_hand_net(net, samples, None, settings, seed, folder / "teacher1.pt", progress)
 
 
 def _teacher_net(samples: HandSamples, settings: NetSettings, seed: int) -> TorchNetwork:

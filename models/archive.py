@@ -22,10 +22,11 @@ def read_model(path: Path) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
         raise ModelError(f"{error}; {remedy}") from error
 
 
-def check_kind(path: Path, header: Mapping[str, Any], kind: str, version: int) -> None:
-    """Refuse the file of another kind or version with a ModelError."""
+def check_kind(path: Path, header: Mapping[str, Any], kind: str, version: int, *older: int) -> None:
+    """Refuse the file of another kind, or of a version that is neither this one nor an older one that will do, with a
+    ModelError."""
     try:
-        check_format(path, header, kind, version)
+        check_format(path, header, kind, version, *older)
     except ArchiveError as error:
         raise ModelError(f"{error}; train it again with: lightgesture train {kind}") from error
 

@@ -12,21 +12,30 @@ from lightgesture.features.net.network import IntegerNetwork, Shape
 from lightgesture.features.outline.contours import ContourSettings, contour_length
 from lightgesture.features.patch import PatchSettings
 from lightgesture.models.archive import check_kind, positive, settings_from
-from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel, SecondLook
+from lightgesture.models.cnn import CONTOUR, PATCH, SCORES, CnnModel, LargerNet, SecondLook
 from lightgesture.models.errors import ModelError
 
 KIND: Final = "cnn"
-FORMAT: Final = 2
+FORMAT: Final = 3
 """Version of the file; raised whenever an older reader would misread a newer file."""
+OLDER: Final = 2
+"""Version that holds one larger net at most."""
 
 NET: Final = "net"
 SECOND: Final = "second"
-"""Beginnings of the names of either net's members."""
+"""Beginnings of the names of the members of the first net and of the first of the larger ones."""
+MOST_LARGER: Final = 4
+"""Larger nets that a model may have."""
+
+
+def larger_name(number: int) -> str:
+    """Beginning of the names of the members of a larger net, which are counted from 0."""
+    return SECOND if number == 0 else f"{SECOND}{number + 1}"
 
 
 def cnn_model_from(path: Path, header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> CnnModel:
     """The model of a file's content; raises ModelError naming the file."""
-    check_kind(path, header, KIND, FORMAT)
+    check_kind(path, header, KIND, FORMAT, OLDER)
     try:
         contour = header["contour"]
         model = CnnModel(
@@ -52,7 +61,15 @@ def _second_from(content: dict[str, Any] | None, arrays: dict[str, NDArray[Any]]
     sure = float(content["sure"])
     if not 0.0 <= sure <= 1.0:
         raise ValueError(f"sure is {sure}, must be 0 to 1")
-    return SecondLook(network_from(arrays, SECOND), positive(content, "temperature"), sure)
+    # A file of before has one, and what is said of it beside the share.
+    told = content.get("nets", [content])
+    if not isinstance(told, list) or not 1 <= len(told) <= MOST_LARGER:
+        raise ValueError(f"the larger nets must be 1 to {MOST_LARGER}")
+    nets = (
+        LargerNet(network_from(arrays, larger_name(number)), positive(net, "temperature"))
+        for number, net in enumerate(told)
+    )
+    return SecondLook(tuple(nets), sure)
 
 
 def _check(model: CnnModel) -> None:
@@ -62,8 +79,8 @@ def _check(model: CnnModel) -> None:
     if length:
         inputs[CONTOUR] = (1, 1, length)
     _check_network(model.network, inputs, model.classes)
-    if model.second is not None:
-        _check_network(model.second.network, {PATCH: inputs[PATCH]}, model.classes)
+    for net in () if model.second is None else model.second.nets:
+        _check_network(net.network, {PATCH: inputs[PATCH]}, model.classes)
     for name in ("contour_mean", "contour_deviation"):
         values = getattr(model, name)
         if values.shape != (length,) or not np.isfinite(values).all():

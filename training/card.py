@@ -231,8 +231,10 @@ def summary(card: dict[str, Any], out: Path) -> list[str]:
     """What a user wants to know first, a line each: what was learnt, how well it reads, what is wrong with it."""
     scores, data = card["held_out_sources"], card["data"]
     counts = [f"{name} {data['per_class'][name]}" for name in card["classes"] if name in data["per_class"]]
+    seconds = card["training"]["seconds"]
+    time = "an unknown time" if seconds is None else f"{seconds} s"
     lines = [
-        f"{data['pictures']} hands of {data['sources']} sources in {card['training']['seconds']} s"
+        f"{data['pictures']} hands of {data['sources']} sources in {time}"
         f"{': ' if counts else ''}{', '.join(counts)}"
     ]
     if scores["accuracy"] is not None:

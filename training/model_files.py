@@ -33,11 +33,15 @@ def write_cnn_model(model: CnnModel, path: Path) -> None:
         "contour": None if model.contour is None else asdict(model.contour),
         "temperature": model.temperature,
         "smallest_hand": model.smallest_hand,
-        "second": None if second is None else {"temperature": second.temperature, "sure": second.sure},
+        "second": None
+        if second is None
+        else {"sure": second.sure, "nets": [{"temperature": net.temperature} for net in second.nets]},
     }
-    larger = {} if second is None else network_arrays(cnn_file.SECOND, second.network)
-    numbers = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
-    _write(path, header, {**network_arrays(cnn_file.NET, model.network), **larger, **numbers})
+    arrays = {"contour_mean": model.contour_mean, "contour_deviation": model.contour_deviation}
+    arrays |= network_arrays(cnn_file.NET, model.network)
+    for number, net in enumerate(() if second is None else second.nets):
+        arrays |= network_arrays(cnn_file.larger_name(number), net.network)
+    _write(path, header, arrays)
 
 
 def write_svm_model(model: SvmModel, path: Path) -> None:

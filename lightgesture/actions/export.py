@@ -21,6 +21,7 @@ from lightgesture.features.patch import PatchSettings, cut_patches
 from lightgesture.fsm import GrammarError, load_grammar
 from lightgesture.models import ModelError, load_classifier
 from lightgesture.models.cnn import CnnClassifier
+from lightgesture.models.cnn_file import larger_name
 from lightgesture.models.svm import SvmClassifier
 from lightgesture.sources import open_source
 
@@ -62,8 +63,9 @@ def _export_classifiers(files: FlatFiles, model: str | None) -> None:
     hands = _find_sample_hands()
     patches = _cut(hands, cnn.model.patch)
     export_net(files, "cnn", cnn.model.network, cnn_constants(files, cnn.model, patches))
-    if cnn.model.second is not None:
-        export_net(files, "second", cnn.model.second.network, second_constants(cnn.model.second))
+    if (second := cnn.model.second) is not None:
+        for number, net in enumerate(second.nets):
+            export_net(files, larger_name(number), net.network, second_constants(second, number))
     export_svm(files, svm, _cut(hands, svm.model.features.patch))
 
 

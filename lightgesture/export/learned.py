@@ -107,10 +107,11 @@ def cnn_constants(files: FlatFiles, model: CnnModel, patches: Patches) -> dict[s
     return content
 
 
-def second_constants(second: SecondLook) -> dict[str, Any]:
-    """When the larger net is asked, and how its answer is weighed."""
+def second_constants(second: SecondLook, number: int) -> dict[str, Any]:
+    """When the larger nets are asked, and how the mean of their answers is weighed; of one of them its temperature."""
     return {
-        "temperature": second.temperature,
+        "temperature": second.nets[number].temperature,
+        "nets": len(second.nets),
         "sure": second.sure,
         "weight": SECOND_WEIGHT,
         "most_doubted": MOST_DOUBTED,

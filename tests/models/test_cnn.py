@@ -122,7 +122,7 @@ def test_a_written_model_reads_back_the_same(model: CnnModel, path: Path) -> Non
 def test_a_file_of_the_first_format_is_told_to_be_trained_again(
     path: Path, changed: Callable[..., Path]
 ) -> None:
-    with pytest.raises(ModelError, match="has format 1, this version reads 2; train it again"):
+    with pytest.raises(ModelError, match="has format 1, this version reads 3; train it again"):
         load_classifier(changed(path, lambda header, arrays: header.update(format=1)))
 
 

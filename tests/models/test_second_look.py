@@ -9,7 +9,14 @@ from lightgesture.features.patch import cut_patches
 from lightgesture.models import ModelError
 from lightgesture.models.archive import read_model
 from lightgesture.models.calibration import softmax
-from lightgesture.models.cnn import MOST_DOUBTED, SECOND_WEIGHT, CnnClassifier, SecondLook, most_doubted
+from lightgesture.models.cnn import (
+    MOST_DOUBTED,
+    SECOND_WEIGHT,
+    CnnClassifier,
+    LargerNet,
+    SecondLook,
+    most_doubted,
+)
 from lightgesture.models.cnn_file import cnn_model_from
 from lightgesture.training.model_files import write_cnn_model
 from tests.models.test_cnn import random_model
@@ -18,9 +25,16 @@ BOXES = [(10 * number, 5 * number, 60, 70) for number in range(6)]
 SIDES = ["left"] * len(BOXES)
 
 
-def with_second(sure):
-    model, other = random_model(3, has_outline=False), random_model(4, has_outline=False)
-    return replace(model, second=SecondLook(other.network, 1.3, sure))
+TEMPERATURES = 1.3, 0.7
+
+
+def with_second(sure, nets=2):
+    model = random_model(3, has_outline=False)
+    larger = (
+        LargerNet(random_model(4 + number, has_outline=False).network, temperature)
+        for number, temperature in enumerate(TEMPERATURES[:nets])
+    )
+    return replace(model, second=SecondLook(tuple(larger), sure))
 
 
 def read(model):
@@ -33,12 +47,16 @@ def test_a_sure_small_net_is_not_asked_again():
     np.testing.assert_array_equal(read(with_second(0.0))[1], alone)
 
 
-def test_the_most_doubted_are_weighed_and_no_others():
-    model = with_second(1.0)
+@pytest.mark.parametrize("nets", [1, 2])
+def test_the_most_doubted_are_weighed_and_no_others(nets):
+    model = with_second(1.0, nets)
     image, both = read(model)
     first = read(replace(model, second=None))[1]
     patches = cut_patches(image, BOXES, SIDES, model.patch)
-    second = softmax(CnnClassifier(model, "numpy").second_scores(patches), 1.3)
+    alone = [replace(model, network=net.network, second=None) for net in model.second.nets]
+    scores = [CnnClassifier(one, "numpy").scores(patches) for one in alone]
+    second = sum(softmax(own, temperature) for own, temperature in zip(scores, TEMPERATURES, strict=False))
+    second = second / nets
     asked = np.argsort(first.max(axis=1), kind="stable")[:MOST_DOUBTED]
     wanted = first.copy()
     wanted[asked] += SECOND_WEIGHT * (second[asked] - first[asked])
@@ -57,8 +75,26 @@ def test_the_file_keeps_it(tmp_path):
     write_cnn_model(model, tmp_path / "m.npz")
     back = cnn_model_from(tmp_path / "m.npz", *read_model(tmp_path / "m.npz"))
     assert back.second is not None
-    assert (back.second.temperature, back.second.sure) == (1.3, 0.8)
+    assert ([net.temperature for net in back.second.nets], back.second.sure) == ([1.3, 0.7], 0.8)
     np.testing.assert_array_equal(read(back)[1], read(model)[1])
+
+
+def test_a_file_of_before_with_one_is_read(tmp_path):
+    model = with_second(0.8, nets=1)
+    write_cnn_model(model, tmp_path / "m.npz")
+    header, arrays = read_model(tmp_path / "m.npz")
+    header |= {"format": 2, "second": {"temperature": 1.3, "sure": 0.8}}
+    back = cnn_model_from(tmp_path / "m.npz", header, arrays)
+    np.testing.assert_array_equal(read(back)[1], read(model)[1])
+
+
+@pytest.mark.parametrize("nets", [[], [{"temperature": 1.0}] * 5, "many", [{"temperature": 0.0}] * 2])
+def test_other_larger_nets_than_there_may_be_are_refused(tmp_path, nets):
+    write_cnn_model(with_second(0.8), tmp_path / "m.npz")
+    header, arrays = read_model(tmp_path / "m.npz")
+    header["second"]["nets"] = nets
+    with pytest.raises(ModelError, match=r"larger nets|temperature"):
+        cnn_model_from(tmp_path / "m.npz", header, arrays)
 
 
 @pytest.mark.parametrize("sure", [-0.1, 1.5, float("nan")])

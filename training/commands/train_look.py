@@ -23,6 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NPZ",
         help="model whose small net is kept (default: the bundled one)",
     )
+    parser.add_argument(
+        "--beside",
+        action="store_true",
+        help="the larger nets of --first stay, too, and the mean of all counts (without: the new one alone)",
+    )
     parser.add_argument("--out", default="cnn.npz", metavar="NPZ", help="model file (default: cnn.npz)")
     parser.add_argument(
         "--steps", type=positive, default=20000, metavar="N", help="of the larger net (default: 20000)"
@@ -51,5 +56,6 @@ def run(args: argparse.Namespace) -> int:
     training = replace(net_training(args), teacher_steps=args.steps)
     out, first = model_path(args.out), SHIPPED.get(args.first, Path(args.first))
     return train_and_tell(
-        lambda progress: train_look_to_file(training, first, out, progress), out, args.quiet
+        lambda progress: train_look_to_file(training, first, out, progress, beside=args.beside),
+        *(out, args.quiet),
     )

@@ -9,11 +9,12 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from lightgesture.errors import InputError, UsageError
 from lightgesture.models import load_classifier
 from lightgesture.models.cnn import CnnClassifier
+from lightgesture.models.cnn_file import MOST_LARGER
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
 from lightgesture.training.nets.checkpoints import need_torch, peak_memory_mib
@@ -24,14 +25,23 @@ from lightgesture.training.pool.patch_kinds import MARGIN
 from lightgesture.training.pool.samples import read_rows
 from lightgesture.training.samples import in_order
 
+EARLIER: Final = "trainings_of_the_other_larger_nets"
+"""Key of a card."""
+
 
 def train_look_to_file(
-    training: CnnTraining, first: Path, out: Path, progress: Callable[[str], None]
+    training: CnnTraining,
+    first: Path,
+    out: Path,
+    progress: Callable[[str], None],
+    *,
+    beside: bool = False,
 ) -> dict[str, Any]:
     """Train, write `out` and the card beside it (suffix .json), and return the card.
 
-    training: its teachers' steps are those of the larger net. first: model file of a net. What is done lies in a folder
-    beside `out`, as in `train_cnn_to_file`. Raises InputError, ModelError, UsageError.
+    training: its teachers' steps are those of the larger net. first: model file of a net. beside: the larger nets of
+    that file stay, and the new one is asked with them. What is done lies in a folder beside `out`, as in
+    `train_cnn_to_file`. Raises InputError, ModelError, UsageError.
     """
     need_torch()
     from lightgesture.training.nets.second_look import (
@@ -47,13 +57,18 @@ def train_look_to_file(
     if not isinstance(known, CnnClassifier) or known.classes != classes:
         raise UsageError(f"{first}: is no net of the classes {', '.join(classes)}; train one with train cnn")
     small_net = small_net_section(first)
+    others = known.model.second.nets if beside and known.model.second is not None else ()
+    if beside and not 1 <= len(others) < MOST_LARGER:
+        raise UsageError(
+            f"{first}: has {len(others)} larger nets; one can be added to 1 to {MOST_LARGER - 1}"
+        )
     drawn = draw(training, out, progress, first=sha256_of(first))
     progress = drawn.spent.kept_by(progress)
     samples = HandSamples(drawn.pool, drawn.learnt_from, drawn.classes, MARGIN)
     how = replace(net_settings(training), steps=training.teacher_steps)
     larger = first_teacher(samples, how, training.seed, drawn.folder, progress)
     hands = held_out_hands(known.model, drawn.originals, drawn.pool, drawn.kept)
-    model = with_second_look(known.model, larger, hands)
+    model = with_second_look(known.model, larger, hands, others)
     card = {
         "name": "cnn",
         "what": "hand patch to token: a small net that was trained before, and a larger one for what it doubts",
@@ -73,6 +88,7 @@ def train_look_to_file(
             "seconds": drawn.spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
         },
+        **(earlier_trainings(first) if beside else {}),
         "model": {"temperature": model.temperature, "second_look": second_section(model)},
     }
     write_cnn_model(model, out)
@@ -93,6 +109,12 @@ def small_net_section(first: Path) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError) as error:
         reason = f"no card of a classifier ({error})"
     raise InputError(f"{first.with_suffix('.json')}: {reason}; a model needs its card to go on from")
+
+
+def earlier_trainings(first: Path) -> dict[str, Any]:
+    """What the card says of the larger nets that stay: the trainings on the card of their file, the first's first."""
+    card = json.loads(first.with_suffix(".json").read_text(encoding="utf-8"))
+    return {EARLIER: [*card.get(EARLIER, []), card.get("training")]}
 
 
 def sha256_of(path: Path) -> str:

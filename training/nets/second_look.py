@@ -1,6 +1,6 @@
-"""The larger net of a hand model: the first of those that taught the small one, in integers. Needs torch."""
+"""The larger nets of a hand model: the first of those that taught the small one, in integers. Needs torch."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -10,7 +10,7 @@ import numpy as np
 from lightgesture.errors import UsageError
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.models.calibration import softmax
-from lightgesture.models.cnn import PATCH, CnnClassifier, CnnModel, SecondLook, weighed
+from lightgesture.models.cnn import PATCH, CnnClassifier, CnnModel, LargerNet, SecondLook, weighed
 from lightgesture.training.nets.architectures import multiply_adds
 from lightgesture.training.nets.hand_net import NetSettings, OutlineScale, to_integers
 from lightgesture.training.nets.hand_samples import HandSamples
@@ -37,18 +37,22 @@ def first_teacher(
     )
 
 
-def with_second_look(model: CnnModel, network: IntegerNetwork, hands: HeldOutHands) -> CnnModel:
+def with_second_look(
+    model: CnnModel, network: IntegerNetwork, hands: HeldOutHands, beside: Sequence[LargerNet] = ()
+) -> CnnModel:
     """The model with the larger net, its temperature fitted on hands that were kept out.
 
-    Raises UsageError where the two do not read the same patches.
+    beside: larger nets that are asked with it. Raises UsageError where the two do not read the same patches.
     """
     if dict(network.inputs) != {PATCH: (model.patch.size, model.patch.size, 3)}:
         raise UsageError("the larger net reads other patches than the small one; train both together")
-    model = replace(model, second=SecondLook(network, 1.0, SURE))
-    truth = hands.truth
-    scores = CnnClassifier(model).second_scores(hands.patches)
-    temperature = fit_temperature(scores, truth) if len(truth) >= LEAST_FITTED else 1.0
-    return replace(model, second=SecondLook(network, temperature, SURE))
+    larger, truth = LargerNet(network, 1.0), hands.truth
+    if len(truth) >= LEAST_FITTED:
+        alone = CnnClassifier(replace(model, second=SecondLook((larger,), SURE)))
+        (scores,) = alone.second_scores(hands.patches)
+        temperature = fit_temperature(scores, truth)
+        larger = replace(larger, temperature=temperature)
+    return replace(model, second=SecondLook((*beside, larger), SURE))
 
 
 def answers_of_both(model: CnnModel, hands: HeldOutHands) -> HeldOut:
@@ -57,19 +61,22 @@ def answers_of_both(model: CnnModel, hands: HeldOutHands) -> HeldOut:
     first = softmax(classifier.scores(hands.patches), model.temperature)
     if model.second is None:
         return hands.answered(first)
-    both = weighed(first, softmax(classifier.second_scores(hands.patches), model.second.temperature))
+    both = weighed(first, classifier.second_probabilities(hands.patches))
     return hands.answered(np.where(first.max(axis=1, keepdims=True) < model.second.sure, both, first))
 
 
 def second_section(model: CnnModel) -> dict[str, Any] | None:
-    """What the card tells of the larger net; None without one."""
+    """What the card tells of the larger nets; None without one."""
     second = model.second
     if second is None:
         return None
-    weights = second.network.weights.values()
+    return {"asked_below": second.sure, "nets": [_net_section(net) for net in second.nets]}
+
+
+def _net_section(net: LargerNet) -> dict[str, Any]:
+    weights = net.network.weights.values()
     return {
         "weights": int(sum(own.weights.size + own.biases.size for own in weights)),
-        "multiply_adds": multiply_adds(second.network.inputs, second.network.nodes),
-        "asked_below": second.sure,
-        "temperature": second.temperature,
+        "multiply_adds": multiply_adds(net.network.inputs, net.network.nodes),
+        "temperature": net.temperature,
     }

@@ -23,7 +23,7 @@ from lightgesture.cli import exit_status
 from lightgesture.config.parsers import positive
 from lightgesture.console import native_messages_muted, print_line
 from lightgesture.errors import ExitStatus
-from lightgesture.features.compiled import best_loops
+from lightgesture.features.compiled.loops import best_loops
 from lightgesture.features.find.classical import Loops
 from lightgesture.features.find.selector import SELECTORS, SelectorName
 from lightgesture.pipeline import Pipeline

@@ -2,7 +2,7 @@
 
 `reference_skin_map` says what is computed, step by step; `skin_map` computes it in whole numbers through tables, and a
 test holds the two together. Whole numbers add up to the same in any order, so that what loops over pixels may be
-NumPy's and OpenCV's (`PLAIN`) or compiled (`features/compiled.py`), and every picture gets the same bytes.
+NumPy's and OpenCV's (`PLAIN`) or compiled (`features/compiled/`), and every picture gets the same bytes.
 """
 
 import math

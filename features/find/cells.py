@@ -4,7 +4,7 @@ Seven channels (luma, skin, gradient magnitude and the gradient in four directio
 cells of the widened box through integral images, as in Dollár, Tu, Perona and Belongie, "Integral
 Channel Features", 2009: a box costs the same whatever its size.
 
-All is whole numbers up to the last division, so that a compiled loop (`features/compiled.py`) and NumPy (`PLAIN`) give
+All is whole numbers up to the last division, so that a compiled loop (`features/compiled/`) and NumPy (`PLAIN`) give
 the same bytes.
 """
 

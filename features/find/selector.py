@@ -43,7 +43,7 @@ def load_selector(
         raise ValueError(f"selector {selector!r}: must be learned or classical")
     if selector == "learned":
         return LearnedSelector(load_learned(file))
-    from lightgesture.features.compiled import best_loops
+    from lightgesture.features.compiled.loops import best_loops
     from lightgesture.features.find.classical import ClassicalSelector
 
     return ClassicalSelector(load_classical(file), best_loops())

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from lightgesture.actions.decode import SAMPLE
 from lightgesture.benchmarks.bad_frames import SCENES
-from lightgesture.features import compiled
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.compiled import loops as compiled
 from lightgesture.features.find import bank, cells, proposals
 from lightgesture.features.find.candidates import pair_numbers
 from lightgesture.features.find.classical import ClassicalSelector, Loops, Scene
@@ -273,13 +273,14 @@ def test_the_cache_lies_in_the_users_folder(monkeypatch, tmp_path):
 
 def test_loops_with_other_numbers_are_compiled_anew(monkeypatch, tmp_path):
     """Numba itself sees only whether the file of a loop has changed."""
-    for name in ("find/kernels.py", "find/other_kernels.py", "skin_map.py"):
+    for name in ("compiled/cells.py", "compiled/runs.py", "skin_map.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("MOST = 96")
-    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled" / "loops.py"))
+    monkeypatch.setattr(compiled, "SIGNATURES", {"cells": {}, "runs": {}})
     monkeypatch.setattr(compiled, "NUMBERS_FROM", ("skin_map.py",))
     versions = [compiled.version_of_loops()]
-    for name in ("find/other_kernels.py", "skin_map.py"):
+    for name in ("compiled/runs.py", "skin_map.py"):
         (tmp_path / name).write_text("MOST = 95")
         versions.append(compiled.version_of_loops())
     assert len(set(versions)) == 3

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from lightgesture.features.compiled import best_loops
+from lightgesture.features.compiled.loops import best_loops
 from lightgesture.features.find.selector_file import ClassicalParts, load_classical, load_learned
 from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector

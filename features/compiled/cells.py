@@ -1,6 +1,6 @@
 """Loops over pixels, cells, boxes and trees, to be compiled: what `PLAIN` of each stage computes, byte for byte.
 
-As Python they run too, some hundred times as slow; `features/compiled.py` has numba compile them. All numbers are whole
+As Python they run too, some hundred times as slow; `loops.py` has numba compile them. All numbers are whole
 up to the last division, so that the order in which they are added changes nothing.
 """
 

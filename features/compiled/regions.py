@@ -1,13 +1,13 @@
 """Loops over the levels of the skin map, to be compiled: what `proposals.plain_whole` finds, outline by outline.
 
-Every level is looked at run by run (`run_kernels.py`); an outline is followed only where it is asked for.
+Every level is looked at run by run (`runs.py`); an outline is followed only where it is asked for.
 """
 
 from typing import Any, Final
 
 import numpy as np
 
-from lightgesture.features.find.run_kernels import find_edges, join_gaps, join_runs, root_of
+from lightgesture.features.compiled.runs import find_edges, join_gaps, join_runs, root_of
 
 # Numba has no types that a type checker knows.
 Array = Any
@@ -155,7 +155,7 @@ def largest_parts(whole: Array, rows: Array, boxes: Array, wanted: Array, lowest
     """The largest part of each wanted mask: int32 (m, 2), outlines one after the other, and int32 (k, 7): where each
     begins, how many points it has, of which mask it is, its box.
 
-    whole, rows: masks without holes one below the other, see `outline_kernels.masks`; what is passed is marked in them.
+    whole, rows: masks without holes one below the other, see `outlines.masks`; what is passed is marked in them.
     boxes: int32 (n, 4), of each within its border. wanted: bool (n,). lowest: a part must be as high.
     """
     # An outline passes a pixel once for each of its four sides at most.

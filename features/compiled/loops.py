@@ -16,8 +16,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
+from lightgesture.features.compiled.stages import joined
 from lightgesture.features.find.classical import Loops
-from lightgesture.features.find.quick import joined
 
 SWITCHED_OFF: Final = "LIGHTGESTURE_PLAIN"
 """Environment variable: any text in it keeps numba out."""
@@ -30,28 +30,28 @@ NUMBERS_FROM: Final = (
 )
 """Modules whose numbers are compiled into the loops."""
 SIGNATURES: Final = {
-    "skin_kernels": {
+    "skin": {
         "red": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], i8)",
         "redness": "Tuple((u2[:,::1], i8, i8))(u1[:,:,::1], u2[:,::1], i8, f8[::1])",
         "stretch": "u1[:,::1](u2[:,::1], i8, i8)",
     },
-    "kernels": {
+    "cells": {
         "sums": "void(u1[:,::1], u1[:,::1], i4[:,:,::1])",
         "cells": "f4[:,::1](i4[:,:,::1], i4[:,::1])",
         "distinct": "i8[::1](i4[:,::1], i8)",
         "walk": "i8[::1](u4[::1], u2[::1], f4[::1], u4[::1], i4[::1], i8, f4[:,::1])",
     },
-    "run_kernels": {},
-    "region_kernels": {
+    "runs": {},
+    "regions": {
         "nodes": "i4[:,::1](u1[:,::1], u8[:,::1], i8, f8[::1], i8, i8, i8)",
         "largest_parts": "Tuple((i4[:,::1], i4[:,::1]))(u1[:,::1], i8[:,::1], i4[:,::1], b1[::1], i8)",
         "outlines": "Tuple((i4[:,::1], i8[::1]))(u1[:,::1], i4[:,::1])",
     },
-    "pair_kernels": {
+    "pairs": {
         "ratios": "f8[:,::1](f8[:,::1], f8[:,::1], i8)",
         "pair_rows": "f4[:,::1](f8[:,::1], f8[:,::1], f8[:,::1], f8[:,::1], i8, i8)",
     },
-    "outline_kernels": {
+    "outlines": {
         "shapes": "f4[:,::1](i4[:,::1], i8[::1], i8[::1], i4[:,::1], b1[::1], i8, i8)",
         "colours": "f8[:,::1](u1[:,:,::1], u1[:,::1], i8[:,::1], i4[:,::1])",
         "overlaps": "f8[:,::1](i4[:,::1])",
@@ -61,8 +61,8 @@ SIGNATURES: Final = {
         "arms": "f8[:,::1](u1[:,::1], i8[:,::1], i4[:,::1], f4[:,::1], i4[:,::1])",
     },
 }
-"""Types of what each loop of the modules in `find/` gives and takes, in numba's notation, so that none is compiled in
-the middle of a stream."""
+"""Types of what each loop of the modules beside this one gives and takes, in numba's notation, so that none is compiled
+in the middle of a stream."""
 
 
 @lru_cache(maxsize=1)
@@ -135,8 +135,8 @@ def compiled_loops(numba: ModuleType, folder: Path) -> Loops:
 def version_of_loops() -> str:
     """Tells one version of the loops and their numbers from another."""
     digest = hashlib.sha256()
-    features = Path(__file__).parent
-    for path in (*sorted(features.glob("find/*kernels.py")), *(features / name for name in NUMBERS_FROM)):
+    own = Path(__file__).parent
+    for path in (*(own / f"{name}.py" for name in SIGNATURES), *(own.parent / name for name in NUMBERS_FROM)):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
@@ -144,8 +144,8 @@ def version_of_loops() -> str:
 def _compiled(
     numba: ModuleType, name: str, signatures: Mapping[str, str]
 ) -> Iterator[tuple[str, Callable[..., Any]]]:
-    """The loops of a module of `find/`, by their names."""
-    module = import_module(f"lightgesture.features.find.{name}")
+    """The loops of a module beside this one, by their names."""
+    module = import_module(f"lightgesture.features.compiled.{name}")
     for helper in module.HELPERS:
         # A compiled loop calls what its module has under a name, which must be compiled too; Python can call it still.
         plain = getattr(getattr(module, helper), "py_func", getattr(module, helper))

@@ -6,8 +6,6 @@ or from when it could first be known, to the first MANUAL_CONTROL with all stick
 
 import os
 import signal
-import subprocess
-import sys
 import threading
 import time
 
@@ -18,34 +16,7 @@ from lightgesture.config.settings import DecodeSettings
 from lightgesture.fsm import Notice
 from lightgesture.vehicle.executor import HELD_UP_S
 from lightgesture.vehicle.opening import open_runner
-
-NEUTRAL_S = 0.3
-"""Within which the sticks must be in their middle, seconds."""
-
-PROFILE = """
-name = "Faults"
-[modes]
-MANUAL = 19
-ALT_HOLD = 2
-POSHOLD = 16
-AUTO = 3
-[link]
-timeout_s = 1.5
-answer_s = 0.1
-[stick]
-rate_hz = 20
-ramp_s = 0.1
-neutral_s = 0.4
-[safety]
-fault_modes = ["POSHOLD", "ALT_HOLD"]
-pilot_channels = [3, 4, 5, 6]
-[[instruction]]
-action = "UP"
-steps = [{ mode = ["ALT_HOLD"] }, { stick = { z = 1 }, seconds = 20 }]
-[[instruction]]
-action = "EXEC"
-steps = [{ mission = 0 }]
-"""
+from tests.app.vehicle.fault_times import NEUTRAL_S, PROFILE, first_neutral, is_neutral_after, note_time
 
 
 class Rig:
@@ -104,18 +75,6 @@ class Rig:
         return first_neutral(self.autopilot, moment_s) - moment_s
 
 
-def first_neutral(autopilot, moment_s):
-    sticks = [(at_s, z) for at_s, z, _, one in autopilot.sticks() if one.get_srcComponent() == 191]
-    pushed_s = max(at_s for at_s, z in sticks if z != 500)
-    return min(
-        (at_s for at_s, z in sticks if z == 500 and at_s > max(pushed_s, moment_s - 0.001)), default=None
-    )
-
-
-def is_neutral_after(autopilot, moment_s):
-    return first_neutral(autopilot, moment_s) is not None
-
-
 @pytest.fixture
 def rig(autopilot, tmp_path, make_picture, instruction, request, monkeypatch):
     """A test's parameter is added to [safety]. A busy machine shall not be taken for the fault that is tested."""
@@ -126,13 +85,6 @@ def rig(autopilot, tmp_path, make_picture, instruction, request, monkeypatch):
     one = Rig(autopilot, str(path), make_picture, instruction)
     yield one
     one.close()
-
-
-def note_time(name, seconds):
-    """For the table of the documents: LIGHTGESTURE_TIMES names a file that the times are added to."""
-    if path := os.environ.get("LIGHTGESTURE_TIMES"):
-        with open(path, "a", encoding="utf-8") as file:
-            file.write(f"{name}\t{seconds:.3f}\n")
 
 
 def pilot_moves(rig):
@@ -301,108 +253,3 @@ def test_a_defect_of_the_executor_lets_go(rig, monkeypatch):
     assert rig.neutral_after(moment_s) < NEUTRAL_S
     rig.until(lambda: rig.said)
     assert "gives up, which is a defect (ZeroDivisionError" in rig.said[0]
-
-
-PROGRAM = """
-import sys, threading, time
-import numpy as np
-from lightgesture.config.settings import DecodeSettings
-from lightgesture.fsm import Instruction
-from lightgesture.interruption import stop_signals
-from lightgesture.vehicle.executor import HELD_UP_S
-from lightgesture.vehicle.opening import open_runner
-link, profile, action, held_up_s = sys.argv[1:]
-import lightgesture.vehicle.executor
-lightgesture.vehicle.executor.HELD_UP_S = float(held_up_s)
-with stop_signals() as stopping:
-    settings = DecodeSettings(mavlink=[link], obey=profile)
-    told = []
-    tell = lambda record: told.append(record.state)
-    runner = open_runner(settings, tell, print, time.monotonic, stopping)
-    runner.start()
-    picture = np.zeros((4, 4, 3), np.uint8)
-    order = Instruction(source=None, frame=0, time_s=0.0, start_frame=0, start_time_s=0.0, text=f"STOP {action} 1 GO",
-        kind="task", action=action, duration_s=None, program=1, parameter=None, change=None, confidence=1.0,
-        words=("STOP",))
-    from lightgesture.records import HeartbeatRecord
-    beat = HeartbeatRecord(source=None, time_s=0.0, frames=0, dropped=0, ms_per_frame=0.0, state="idle")
-    runner.show(picture, [beat])
-    while not stopping.is_set():
-        is_wanted = not told or told[-1] == "refused"
-        runner.show(picture, [beat, order] if is_wanted else [beat])
-        time.sleep(0.3 if is_wanted else 0.05)
-    runner.stop()
-"""
-
-
-@pytest.fixture
-def program(autopilot, tmp_path):
-    """Starts the executor in a process of its own that carries an action out."""
-    path = tmp_path / "vehicle.toml"
-    path.write_text(PROFILE)
-    children = []
-
-    def start(action="UP", held_up_s=5.0):
-        command = [sys.executable, "-c", PROGRAM, autopilot.link, str(path), action, str(held_up_s)]
-        child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        children.append(child)
-        end_s = time.monotonic() + 20
-        while not (
-            any(z > 550 for _, z, *_ in autopilot.sticks()) if action == "UP" else autopilot.mode == 3
-        ):
-            assert time.monotonic() < end_s
-            time.sleep(0.01)
-        return child
-
-    yield start
-    for child in children:
-        child.kill()
-        child.wait()
-
-
-SLOW_SIGNALS = [
-    pytest.param(number, marks=pytest.mark.slow) for number in (signal.SIGSTOP, signal.SIGTERM, signal.SIGINT)
-]
-
-
-@pytest.mark.parametrize("number", [signal.SIGKILL, *SLOW_SIGNALS])
-def test_the_end_of_the_process(program, autopilot, number):
-    child = program()
-    moment_s = time.monotonic()
-    child.send_signal(number)
-    end_s = moment_s + 3
-    while not is_neutral_after(autopilot, moment_s):
-        assert time.monotonic() < end_s
-        time.sleep(0.005)
-    seconds = first_neutral(autopilot, moment_s) - moment_s
-    note_time(number.name, seconds)
-    assert seconds < NEUTRAL_S
-    time.sleep(0.3)
-    later = [z for at_s, z, *_ in autopilot.sticks() if at_s > moment_s + seconds]
-    assert len(later) >= 2  # repeated, for one may get lost
-    assert set(later) == {500}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
-def test_a_mission_is_held_by_the_watchdog(program, autopilot, number):
-    child = program("EXEC")
-    time.sleep(0.3)
-    child.send_signal(number)
-    moment_s = time.monotonic()
-    while autopilot.mode != 2:
-        assert time.monotonic() < moment_s + 2
-        time.sleep(0.005)
-    assert time.monotonic() - moment_s < 0.5
-    assert autopilot.sticks() == []
-
-
-@pytest.mark.slow
-def test_a_process_that_goes_on_after_a_stop_does_not_take_the_sticks_again(program, autopilot):
-    child = program(held_up_s=HELD_UP_S)
-    child.send_signal(signal.SIGSTOP)
-    time.sleep(0.6)
-    child.send_signal(signal.SIGCONT)
-    moment_s = time.monotonic()
-    time.sleep(0.6)
-    assert {z for at_s, z, *_ in autopilot.sticks() if at_s > moment_s + 0.05} <= {500}

@@ -12,7 +12,7 @@ from lightgesture.features.compiled.runs import find_edges, join_gaps, join_runs
 # Numba has no types that a type checker knows.
 Array = Any
 
-HELPERS: Final = ("root_of", "find_edges", "join_gaps", "join_runs", "follow", "mark_passed")
+HELPERS: Final = ("root_of", "find_edges", "join_gaps", "join_runs", "follow", "mark_passed", "keep_regions")
 """What the loops call."""
 ACROSS: Final = np.array((1, 1, 0, -1, -1, -1, 0, 1) * 2, np.int64)
 DOWN: Final = np.array((0, -1, -1, -1, 0, 1, 1, 1) * 2, np.int64)
@@ -58,6 +58,43 @@ def mark_passed(mask: Array, points: Array, begin: int, end: int) -> Array:
         twice += x * next_y - next_x * y
         x, y = next_x, next_y
     return abs(twice)
+
+
+def keep_regions(
+    pixels: Array,
+    level: int,
+    parents: Array,
+    gap_parents: Array,
+    regions: Array,
+    limits: Array,
+    shortest: int,
+    scratch: Array,
+    found: Array,
+    count: int,
+    outlines: int,
+) -> tuple[int, int]:
+    """Put the regions of a level that lie in no other's hole and have a hand's size behind the first `count` of
+    `found`; how many there are then, and how many outlines were met.
+
+    parents: of the level's labels. The rest: see `nodes`.
+    """
+    # From below, as OpenCV tells them.
+    for label in range(len(parents) - 1, -1, -1):
+        if parents[label] != label or root_of(gap_parents, regions[label, 5]) != 0:
+            continue
+        outlines += 1
+        x, y = regions[label, 0], regions[label, 1]
+        wide, tall = regions[label, 2] - x, regions[label, 3] - y
+        short, long = min(wide, tall), max(wide, tall)
+        if count == len(found) or short < limits[0] or long > limits[1] or long > limits[2] * short:
+            continue
+        # There and back along the longer side is enough, mostly.
+        if 2 * long - 2 < shortest and follow(pixels, regions[label, 4], y, level, scratch, 0) < shortest:
+            continue
+        found[count, 0], found[count, 1], found[count, 2], found[count, 3] = x - 1, y - 1, wide, tall
+        found[count, 4], found[count, 5], found[count, 6] = regions[label, 4], y, level
+        count += 1
+    return count, outlines
 
 
 def nodes(
@@ -112,22 +149,19 @@ def nodes(
                 regions,
                 label_count,
             )
-        # From below, as OpenCV tells them.
-        for label in range(label_count - 1, -1, -1):
-            if parents[label] != label or root_of(gap_parents, regions[label, 5]) != 0:
-                continue
-            outlines += 1
-            x, y = regions[label, 0], regions[label, 1]
-            wide, tall = regions[label, 2] - x, regions[label, 3] - y
-            short, long = min(wide, tall), max(wide, tall)
-            if count == most or short < limits[0] or long > limits[1] or long > limits[2] * short:
-                continue
-            # There and back along the longer side is enough, mostly.
-            if 2 * long - 2 < shortest and follow(pixels, regions[label, 4], y, level, scratch, 0) < shortest:
-                continue
-            found[count, 0], found[count, 1], found[count, 2], found[count, 3] = x - 1, y - 1, wide, tall
-            found[count, 4], found[count, 5], found[count, 6] = regions[label, 4], y, level
-            count += 1
+        count, outlines = keep_regions(
+            pixels,
+            level,
+            parents[:label_count],
+            gap_parents,
+            regions,
+            limits,
+            shortest,
+            scratch,
+            found,
+            count,
+            outlines,
+        )
     return found[:count].copy()
 
 

@@ -159,11 +159,13 @@ def test_a_net_goes_on_at_another_stride_but_not_with_other_layers():
 
 def test_the_history_of_a_small_net_is_carried_on(tmp_path):
     from lightgesture.models.loading import SHIPPED
-    from lightgesture.training.nets.look import small_net_section
+    from lightgesture.training.nets.look import carried_on
 
-    told = json.loads(SHIPPED["cnn"].with_suffix(".json").read_text(encoding="utf-8"))["small_net"]
-    assert small_net_section(SHIPPED["cnn"]) == told
-    assert told["trained_on"]["licences"]["GPL-3.0"] == 5
+    card = json.loads(SHIPPED["cnn"].with_suffix(".json").read_text(encoding="utf-8"))
+    assert carried_on(SHIPPED["cnn"], beside=False) == {"small_net": card["small_net"]}
+    earlier = carried_on(SHIPPED["cnn"], beside=True)["trainings_of_the_other_larger_nets"]
+    assert earlier == [*card["trainings_of_the_other_larger_nets"], card["training"]]
+    assert card["small_net"]["trained_on"]["licences"]["GPL-3.0"] == 5
     (tmp_path / "m.npz").write_bytes(b"net")
     with pytest.raises(InputError, match=r"m\.json: No such file or directory; a model needs its card"):
-        small_net_section(tmp_path / "m.npz")
+        carried_on(tmp_path / "m.npz", beside=False)

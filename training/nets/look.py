@@ -56,7 +56,7 @@ def train_look_to_file(
     classes = in_order(row.token for row in read_rows(training.data, training.without))
     if not isinstance(known, CnnClassifier) or known.classes != classes:
         raise UsageError(f"{first}: is no net of the classes {', '.join(classes)}; train one with train cnn")
-    small_net = small_net_section(first)
+    carried = carried_on(first, beside=beside)
     others = known.model.second.nets if beside and known.model.second is not None else ()
     if beside and not 1 <= len(others) < MOST_LARGER:
         raise UsageError(
@@ -71,8 +71,8 @@ def train_look_to_file(
     model = with_second_look(known.model, larger, hands, others)
     card = {
         "name": "cnn",
-        "what": "hand patch to token: a small net that was trained before, and a larger one for what it doubts",
-        "small_net": small_net,
+        "what": "hand patch to token: a small net that was trained before, and larger ones for what it doubts",
+        **carried,
         **make_card(
             drawn.rows,
             drawn.originals,
@@ -88,7 +88,6 @@ def train_look_to_file(
             "seconds": drawn.spent.whole_seconds,
             "peak_memory_mib": peak_memory_mib(),
         },
-        **(earlier_trainings(first) if beside else {}),
         "model": {"temperature": model.temperature, "second_look": second_section(model)},
     }
     write_cnn_model(model, out)
@@ -96,25 +95,23 @@ def train_look_to_file(
     return card
 
 
-def small_net_section(first: Path) -> dict[str, Any]:
-    """What the card beside a model's file says of its small net, whatever second look that has. Raises InputError."""
+def carried_on(first: Path, *, beside: bool) -> dict[str, Any]:
+    """What a new card takes from the one beside a model's file: of its small net, whatever second look that has, and
+    with `beside` the trainings of the larger nets that stay, the first's first. Raises InputError."""
     try:
         card = json.loads(first.with_suffix(".json").read_text(encoding="utf-8"))
         if "small_net" in card:
-            return dict(card["small_net"])
-        known = {name: card["data"][name] for name in ("pictures", "sources", "licences")}
-        return {"of_the_file_with_sha256": sha256_of(first), "trained_on": known}
+            small_net = dict(card["small_net"])
+        else:
+            known = {name: card["data"][name] for name in ("pictures", "sources", "licences")}
+            small_net = {"of_the_file_with_sha256": sha256_of(first), "trained_on": known}
+        larger = {EARLIER: [*card.get(EARLIER, []), card["training"]]} if beside else {}
+        return {"small_net": small_net, **larger}
     except OSError as error:
         reason = error.strerror or "not readable"
     except (ValueError, KeyError, TypeError) as error:
         reason = f"no card of a classifier ({error})"
     raise InputError(f"{first.with_suffix('.json')}: {reason}; a model needs its card to go on from")
-
-
-def earlier_trainings(first: Path) -> dict[str, Any]:
-    """What the card says of the larger nets that stay: the trainings on the card of their file, the first's first."""
-    card = json.loads(first.with_suffix(".json").read_text(encoding="utf-8"))
-    return {EARLIER: [*card.get(EARLIER, []), card.get("training")]}
 
 
 def sha256_of(path: Path) -> str:

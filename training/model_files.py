@@ -68,6 +68,8 @@ def write_selector(classical: ClassicalParts, learned: LearnedParts, path: Path)
         **network_arrays(selector_file.LOCATOR, learned.locator),
         **network_arrays(selector_file.REFINER, learned.refiner),
     }
+    if learned.verifier is not None:
+        arrays |= network_arrays(selector_file.VERIFIER, learned.verifier)
     _write(path, {"format": selector_file.FORMAT, "kind": selector_file.KIND}, arrays)
 
 

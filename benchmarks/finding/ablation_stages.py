@@ -18,7 +18,7 @@ from lightgesture.features.colour import ColourMap, ColourStage
 from lightgesture.features.find.bank import bank_distances, hand_proximity
 from lightgesture.features.find.candidates import APART_IOU, best_distinct, scored_pairs
 from lightgesture.features.find.classical import Loops, Scene, Scorer, other_extents, scored_candidates
-from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, Places, regions_at
+from lightgesture.features.find.learned import HAND_IOU, NO_OUTLINE, LearnedSelector, Places, regions_at
 from lightgesture.features.find.proposals import LEVELS, Proposals, propose
 from lightgesture.features.find.selector import SelectorName, load_selector
 from lightgesture.features.find.selector_file import (
@@ -210,6 +210,7 @@ def _learned_variants(parts: LearnedParts) -> list[Method]:
         whole,
         _with("learned: locator alone", ChangedStage("learned", LearnedSearch(nets, False), follows=False)),
         _with("learned: no trees", ChangedStage("learned", LearnedSearch(nets, True))),
+        _with("learned: no verifier", LearnedSelector(replace(parts, verifier=None))),
         _with("learned: no pair choice", alone),
         _with("learned: search every frame", ChangedStage("learned", follows=False)),
         Memoryless(whole, "learned: no tracks"),

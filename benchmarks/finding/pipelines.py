@@ -171,9 +171,11 @@ def _parts(selector: SelectorName, file: File) -> Mapping[str, NDArray[Any]]:
             "bank": classical.bank.centres,
         }
     learned = load_learned(file)
+    verified = {} if learned.verifier is None else {"verifier": _weights(learned.verifier)}
     return {
         "locator": _weights(learned.locator),
         "refiner": _weights(learned.refiner),
+        **verified,
         "trees": learned.places.value,
         "trees of pairs": learned.pairs.value,
     }

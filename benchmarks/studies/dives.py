@@ -2,8 +2,9 @@
 
 The dives of the real divers are dealt into folds. For each fold a finder is trained from the rest, nets and trees, and
 finds and reads the pictures of its own fold; the tables have every picture once. The finder must start from a file that
-has seen no diver, or from random weights. The reader is the model that is named, which may have seen all of them: what
-these tables say of reading, of hands in given boxes most of all, counts for models alone that have not.
+has seen no diver, or from random weights, and the verifier from a reader that has seen none (`--reader`). The reader
+is the model that is named, which may have seen all of them: what these tables say of reading, of hands in given boxes
+most of all, counts for models alone that have not.
 
 What is done lies in the folder of parts, and the same command goes on there: composed pictures, the nets of each fold
 and its selector, `foldN.npz`, which `evaluate divers --selector FILE --dive NAME` takes.
@@ -40,6 +41,8 @@ FOLDS: Final = 5
 """Parts into which the dives are dealt."""
 STEPS: Final = 1600
 """Of the locator of a fold, between a quarter and a third of those of the shipped one."""
+VERIFIER_STEPS: Final = 1.5
+"""Of the verifier over those of the locator: about half of those of the shipped one."""
 
 
 def fold_of_dive(dive: str) -> int:
@@ -59,7 +62,8 @@ def run(args: argparse.Namespace) -> None:
     need_torch()
     data, parts = find_data(args.data), Path(args.parts)
     start = None if args.start is None else Path(args.start)
-    settings = RegionTraining(precision=args.precision, start=start).of_steps(args.steps)
+    settings = RegionTraining(precision=args.precision, start=start, reader=args.reader).of_steps(args.steps)
+    settings = replace(settings, verifier_steps=round(VERIFIER_STEPS * args.steps))
     pictures = read_pictures(data, LeftOut(), args.seed, args.jobs, parts, say)
     classifier = load_classifier(args.model)
     frames = read_divers(data)
@@ -109,6 +113,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--fold", type=fold_number, action="append", metavar="N", help="only this one; may be repeated"
+    )
+    parser.add_argument(
+        "--reader",
+        default=DEFAULT,
+        metavar="NPZ",
+        help="model whose larger net the verifier learns on from (default cnn, which has seen all dives)",
     )
     parser.add_argument("--model", default=DEFAULT, help="reads what is found (default cnn)")
     parser.add_argument("--precision", choices=PRECISIONS, default="float32", help="see train regions")

@@ -26,7 +26,8 @@ from lightgesture.features.find.refiner import INPUT as REFINER_INPUT
 from lightgesture.features.find.refiner import Rectangle, Refined, Refiner
 from lightgesture.features.find.selector_file import LearnedParts
 from lightgesture.features.find.settings import LEARNED, SelectorSettings
-from lightgesture.features.find.trees import evaluate
+from lightgesture.features.find.trees import Trees, evaluate
+from lightgesture.features.find.verifier import Verifier
 from lightgesture.features.geometry import box_iou, pairwise_iou, whole_box
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.types import Box, Candidates, Float, HandRegion, Image
@@ -57,20 +58,35 @@ class Places:
         return peaks, self.refiner.process(colour, peaks.boxes, tables)
 
 
+class Scorer:
+    """How likely places are hands, by all that is known of them."""
+
+    def __init__(self, places: Trees, verifier: IntegerNetwork | None) -> None:
+        """verifier: None for a file of before, whose trees have the last word."""
+        self._places = places
+        self._verifier = None if verifier is None else Verifier(verifier)
+
+    def process(self, colour: ColourMap, peaks: Peaks, refined: Refined) -> Float:
+        """Predicted IoU of each refined box with a hand, float32 (n,), about 0 to 1."""
+        size = colour.picture.shape[1], colour.picture.shape[0]
+        scores = evaluate(self._places, describe_places(peaks, refined, size))
+        return scores if self._verifier is None else self._verifier.process(colour, refined.boxes, scores)
+
+
 class LearnedSelector:
     """Colour map -> candidates with scores, by locator and refiner."""
 
     settings: SelectorSettings = LEARNED
 
     def __init__(self, parts: LearnedParts) -> None:
-        self._nets = Places(parts.locator, parts.refiner)
-        self._places, self._pairs = parts.places, parts.pairs
+        self._nets, self._scorer = Places(parts.locator, parts.refiner), Scorer(parts.places, parts.verifier)
+        self._pairs = parts.pairs
 
     def process(self, colour: ColourMap) -> Candidates:
         """Search the whole frame."""
         peaks, refined = self._nets.find(colour)
         size = colour.picture.shape[1], colour.picture.shape[0]
-        scores = evaluate(self._places, describe_places(peaks, refined, size))
+        scores = self._scorer.process(colour, peaks, refined)
         kept, items = scored_places(colour, peaks, refined, scores)
         together = score_pairs(self._pairs, items, size, peaks.face)
         found = regions_at(colour, refined.boxes[kept], scores[kept])

@@ -6,13 +6,19 @@ track, moved on by its filter, can be looked at just as well, so a followed hand
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import WORKING_PIXELS, ColourMap
+from lightgesture.features.find.windows import (
+    LARGEST_WINDOW,
+    LEAST_WINDOW,
+    WindowSettings,
+    windows_in,
+)
 from lightgesture.features.net.network import IntegerNetwork, Quantisation
 from lightgesture.features.net.runner import Levels, Network
 from lightgesture.features.patch import Square, cut_squares, shrink_square, squares_round
@@ -31,14 +37,7 @@ INPUT, HAND, BOX = "windows", "hand", "box"
 window sides."""
 LEAST_SIDE: Final = 2.0
 """Pixels; no box is smaller."""
-SIZE: Final = 32
-"""Pixels along each side of a window."""
-CONTEXT: Final = 1.5
-"""Side of the window over the longer side of the box."""
-LEAST_WINDOW: Final = 0.125
-"""Least side of a window over its size."""
-LARGEST_WINDOW: Final = 2.0
-"""Largest side of a window over the longer side of the picture."""
+WINDOW: Final = WindowSettings(size=32, context=1.5)
 SAMPLE: Final = (80, 60)
 """Width and height of what stands for a whole frame where only its mean colours are asked for."""
 
@@ -74,9 +73,7 @@ class Refiner:
         """
         if not len(boxes):
             return Refined(np.zeros((0, 4), np.float32), np.zeros(0, np.float32))
-        scale = colour.detail.shape[1] / colour.picture.shape[1]
-        windows = windows_round(boxes * np.float32(scale), colour.detail)
-        cuts = cut_windows(colour.detail, windows)
+        cuts, windows, scale = windows_in(colour, boxes, WINDOW)
         lumas, luma_values = luma_tables(cuts)
         levels = [
             cv2.LUT(luma, table)
@@ -95,9 +92,10 @@ class Refiner:
         if width * height > SAMPLE[0] * SAMPLE[1]:
             sample = np.asarray(cv2.resize(image, SAMPLE, interpolation=cv2.INTER_LINEAR), np.uint8)
         # As small as a window of the working picture's detail may be, which has about so many pixels.
-        least = LEAST_WINDOW * SIZE * max((width * height / (4 * WORKING_PIXELS)) ** 0.5, 1.0)
-        windows = squares_round(boxes, CONTEXT, least, LARGEST_WINDOW * max(width, height))
-        cuts = np.empty((len(windows), SIZE, SIZE, 3), np.uint8)
+        size = WINDOW.size
+        least = LEAST_WINDOW * size * max((width * height / (4 * WORKING_PIXELS)) ** 0.5, 1.0)
+        windows = squares_round(boxes, WINDOW.context, least, LARGEST_WINDOW * max(width, height))
+        cuts = np.empty((len(windows), size, size, 3), np.uint8)
         for cut, square in zip(cuts, cut_squares(image, windows), strict=True):
             shrink_square(square, cut)
         quantisation = self._network.quantisation(INPUT)
@@ -105,7 +103,7 @@ class Refiner:
         return self._run(_with_luma(cuts, tables, _luma_levels(cuts, quantisation)), windows)
 
     def _run(self, seen: Levels, windows: Sequence[Square]) -> tuple[list[Rectangle], list[float]]:
-        """Refined boxes in the pixels of the windows, and logits, of what n windows show, int8 (n, SIZE, SIZE, 4)."""
+        """Refined boxes in the pixels of the windows, and logits, of what n windows show, int8 (n, size, size, 4)."""
         outputs = self._network.run({INPUT: seen})
         found = []
         for (left, top, side), (x0, y0, x1, y1) in zip(
@@ -117,34 +115,20 @@ class Refiner:
 
 
 def _luma_levels(cuts: NDArray[np.uint8], quantisation: Quantisation) -> Levels:
-    """int8 (n * SIZE, SIZE): the luma of each of n windows, standardised by itself; see `luma_tables`."""
-    luma = np.asarray(cv2.cvtColor(cuts.reshape(-1, SIZE, 3), cv2.COLOR_BGR2GRAY), np.uint8)
+    """int8 (n * size, size): the luma of each of n windows, standardised by itself; see `luma_tables`."""
+    size = cuts.shape[2]
+    luma = np.asarray(cv2.cvtColor(cuts.reshape(-1, size, 3), cv2.COLOR_BGR2GRAY), np.uint8)
     roots = square_roots(luma)
     levels = np.empty(luma.shape, np.int8)
-    for first in range(0, len(luma), SIZE):
-        own = slice(first, first + SIZE)
+    for first in range(0, len(luma), size):
+        own = slice(first, first + size)
         ((factor, offset),) = scales_of(luma[own], roots[own], quantisation)
         levels[own] = as_levels(roots[own], quantisation, factor, offset)
     return levels
 
 
 def _with_luma(cuts: NDArray[np.uint8], tables: Levels, luma: Levels) -> Levels:
-    """int8 (n, SIZE, SIZE, 4): blue, green and red of windows by the tables of their frame, and luma as it is."""
+    """int8 (n, size, size, 4): blue, green and red of windows by the tables of their frame, and luma as it is."""
     # Several times as fast as laying channels side by side with NumPy.
-    seen = cv2.merge([cv2.LUT(cuts.reshape(-1, SIZE, 3), tables), luma])
+    seen = cv2.merge([cv2.LUT(cuts.reshape(-1, cuts.shape[2], 3), tables), luma])
     return np.asarray(seen, np.int8).reshape(*cuts.shape[:3], 4)
-
-
-def windows_round(boxes: NDArray[Any], picture: Image) -> list[Square]:
-    """The windows of boxes, (n, 4), x, y, width, height in pixels of the picture."""
-    return squares_round(boxes, CONTEXT, LEAST_WINDOW * SIZE, LARGEST_WINDOW * max(picture.shape[:2]))
-
-
-def cut_windows(picture: Image, windows: Sequence[Square], size: int = SIZE) -> NDArray[np.uint8]:
-    """uint8 (n, size, size, 3): windows of a picture; what lies outside it continues its edge."""
-    seen = np.empty((len(windows), size, size, 3), np.uint8)
-    for place, cut, (_, _, side) in zip(seen, cut_squares(picture, windows), windows, strict=True):
-        # Interpolation alone would alias where the window shrinks.
-        how = cv2.INTER_AREA if side > size else cv2.INTER_LINEAR
-        cv2.resize(cut, (size, size), place, interpolation=how)
-    return seen

@@ -13,12 +13,14 @@ from lightgesture.features.archive import ArchiveError, check_format, read_archi
 from lightgesture.features.find.bank import Bank, bank_from
 from lightgesture.features.find.candidates import PAIR_COLUMNS, PLACE_COLUMNS
 from lightgesture.features.find.trees import Trees
-from lightgesture.features.net.file import network_from
+from lightgesture.features.net.file import LAYOUT, network_from
 from lightgesture.features.net.network import IntegerNetwork
 
 KIND: Final = "selector"
-FORMAT: Final = 4
+FORMAT: Final = 5
 """Version of the file; raised whenever an older reader would misread a newer file."""
+UNVERIFIED: Final = 4
+"""Version without a verifier, which is read as it is."""
 OLDER: Final = 3
 """Version whose locator saw pictures of half the size: its nets can learn on and nothing else; the classical choice is
 as here."""
@@ -28,11 +30,11 @@ BANK_NUMBERS: Final = 2
 TREE_ARRAYS: Final = ("feature", "threshold", "left", "right", "value")
 TREE_NUMBERS: Final = ("base", "depth")
 """What is stored of trees, each under the name of the part and this one."""
-LOCATOR, REFINER = "locator", "refiner"
+LOCATOR, REFINER, VERIFIER = "locator", "refiner", "verifier"
 """Beginnings of the names of each net's arrays."""
 CLASSICAL_PARTS, LEARNED_PARTS = (
     ("glance", "extents", "extent_pairs", "bank"),
-    ("places", "place_pairs", LOCATOR, REFINER),
+    ("places", "place_pairs", LOCATOR, REFINER, VERIFIER),
 )
 """Beginnings of the names of what either choice needs; the rest stays packed."""
 REMEDY: Final = "make it again with: lightgesture train regions"
@@ -58,12 +60,13 @@ class ClassicalParts:
 @dataclass(frozen=True, slots=True, eq=False)
 class LearnedParts:
     """locator, refiner: the nets. places: predicts the IoU of a refined box with a hand. pairs: of a pair, the lower
-    of both."""
+    of both. verifier: asked about places that the trees doubt, None in a file of before."""
 
     locator: IntegerNetwork
     refiner: IntegerNetwork
     places: Trees
     pairs: Trees
+    verifier: IntegerNetwork | None = None
 
 
 def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts:
@@ -78,7 +81,7 @@ def load_classical(path: str | os.PathLike[str] | None = None) -> ClassicalParts
             bank_from(arrays, "bank"),
         )
 
-    return _read(path, CLASSICAL_PARTS, read, OLDER)
+    return _read(path, CLASSICAL_PARTS, read, UNVERIFIED, OLDER)
 
 
 def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
@@ -90,9 +93,10 @@ def load_learned(path: str | os.PathLike[str] | None = None) -> LearnedParts:
             network_from(arrays, REFINER),
             trees_from(arrays, "places", PLACE_COLUMNS),
             trees_from(arrays, "place_pairs", PAIR_COLUMNS),
+            network_from(arrays, VERIFIER) if f"{VERIFIER}_{LAYOUT}" in arrays else None,
         )
 
-    return _read(path, LEARNED_PARTS, read)
+    return _read(path, LEARNED_PARTS, read, UNVERIFIED)
 
 
 def load_nets(path: str | os.PathLike[str]) -> tuple[IntegerNetwork, IntegerNetwork]:
@@ -101,7 +105,7 @@ def load_nets(path: str | os.PathLike[str]) -> tuple[IntegerNetwork, IntegerNetw
     def read(arrays: Mapping[str, NDArray[Any]]) -> tuple[IntegerNetwork, IntegerNetwork]:
         return network_from(arrays, LOCATOR), network_from(arrays, REFINER)
 
-    return _read(path, (LOCATOR, REFINER), read, OLDER)
+    return _read(path, (LOCATOR, REFINER), read, UNVERIFIED, OLDER)
 
 
 def _read(

@@ -73,6 +73,8 @@ def _export_selector(files: FlatFiles) -> None:
     learned, classical = load_learned(), load_classical()
     export_net(files, "locator", learned.locator, {})
     export_net(files, "refiner", learned.refiner, {})
+    if learned.verifier is not None:
+        export_net(files, "verifier", learned.verifier, {})
     export_trees(
         files,
         {

@@ -16,7 +16,7 @@ from lightgesture.fsm.language.load import BUNDLED
 from lightgesture.models.cnn import CnnModel
 from lightgesture.training.model_files import write_cnn_model
 
-NETS = ("cnn", "refiner", "locator")
+NETS = ("cnn", "refiner", "locator", "verifier")
 
 
 @pytest.fixture(scope="module")

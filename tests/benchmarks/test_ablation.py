@@ -174,7 +174,7 @@ def test_without_memory_every_frame_is_a_picture(fake_method):
 
 def test_every_variant_reads_a_picture(scene):
     methods = ablations()
-    assert len({method.name for method in methods}) == len(methods) == 13
+    assert len({method.name for method in methods}) == len(methods) == 14
     assert [method.name for method in methods if ":" not in method.name] == ["learned", "classical"]
     for method in methods:
         assert all(reading.token is None for reading in method.read(scene))

@@ -174,7 +174,7 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     card = {"left_out": {"sources": ["lab", "tank"], "fold": None}}
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")
-    assert shared_parts("learned", file) == ("locator", "refiner")
+    assert shared_parts("learned", file) == ("locator", "refiner", "verifier")
     assert shared_parts("learned", file, file) == ("locator", "refiner", "trees", "trees of pairs")
     for selector, parts in (("classical", "trees, trees of pairs, bank"), ("learned", "locator, refiner")):
         told = []

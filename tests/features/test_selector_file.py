@@ -11,6 +11,7 @@ from lightgesture.features.find.selector_file import (
     BUNDLED,
     FORMAT,
     OLDER,
+    UNVERIFIED,
     SelectorError,
     load_classical,
     load_learned,
@@ -143,7 +144,7 @@ def test_a_pickle_is_never_opened(tmp_path):
 
 def test_of_a_file_of_before_nets_can_learn_on_and_the_classical_choice_serves(tmp_path):
     _write(tmp_path / "old.npz", header=_header(format=OLDER))
-    with pytest.raises(SelectorError, match=r"old\.npz: has format 3, this version reads 4; make it again"):
+    with pytest.raises(SelectorError, match=r"old\.npz: has format 3, this version reads 5; make it again"):
         load_learned(tmp_path / "old.npz")
     assert load_classical(tmp_path / "old.npz").pairs.base == load_classical().pairs.base
     locator, refiner = load_nets(tmp_path / "old.npz")
@@ -193,3 +194,11 @@ def test_a_file_of_an_older_version_is_told_so(tmp_path):
         SelectorError, match=r"old\.npz: has no header, so it is of an older version.*; make it again"
     ):
         load_classical(tmp_path / "old.npz")
+
+
+def test_a_file_without_a_verifier_is_read_as_it_is(tmp_path):
+    arrays = {name: array for name, array in read_archive(BUNDLED)[1].items() if "verifier" not in name}
+    np.savez(tmp_path / "before.npz", header=_header(format=UNVERIFIED), **arrays)
+    parts = load_learned(tmp_path / "before.npz")
+    assert parts.verifier is None
+    assert parts.pairs.base == load_learned().pairs.base

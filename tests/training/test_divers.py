@@ -157,6 +157,34 @@ def test_a_net_goes_on_at_another_stride_but_not_with_other_layers():
         start_from(wider, network, {name: torch.zeros(2, 3, 128, 160)})
 
 
+def test_a_net_that_answers_another_question_takes_all_layers_but_the_last():
+    torch = pytest.importorskip("torch")
+    from lightgesture.errors import UsageError
+    from lightgesture.training.nets.architectures import VERIFIER_INPUT, VERIFIER_OUTPUTS, verifier_nodes
+    from lightgesture.training.nets.started import start_from
+    from lightgesture.training.nets.torch_network import TorchNetwork
+    from lightgesture.training.regions.nets import larger_net
+
+    network, batch = larger_net("cnn"), {"patch": torch.zeros(2, 3, 32, 32)}
+    module = TorchNetwork({"patch": VERIFIER_INPUT}, verifier_nodes(), VERIFIER_OUTPUTS)
+    last = module.layers["hand"].weight.detach().clone()
+    start_from(module, network, batch, but_the_last=True)
+    own, scales = network.weights["stem"].weights, network.weights["stem"].scales
+    wanted = (own * scales[:, None, None, None]).transpose(0, 3, 1, 2)
+    np.testing.assert_allclose(module.layers["stem"].weight.detach().numpy(), wanted, atol=1e-6)
+    assert torch.equal(module.layers["hand"].weight, last)
+    with pytest.raises(UsageError, match="a net of other layers"):
+        start_from(module, network, batch)
+
+
+def test_a_reader_without_a_larger_net_starts_no_verifier():
+    from lightgesture.errors import UsageError
+    from lightgesture.training.regions.nets import larger_net
+
+    with pytest.raises(UsageError, match="svm: has no larger net to learn on from"):
+        larger_net("svm")
+
+
 def test_the_history_of_a_small_net_is_carried_on(tmp_path):
     from lightgesture.models.loading import SHIPPED
     from lightgesture.training.nets.look import carried_on

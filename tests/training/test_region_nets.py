@@ -9,7 +9,7 @@ import pytest
 from lightgesture.cli import main
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.training.model_files import write_networks, write_selector
-from lightgesture.training.regions import train
+from lightgesture.training.regions import learned, train
 from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.nets import LOCATOR, NETS, REFINER, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import Material
@@ -42,7 +42,27 @@ def test_the_learned_choice_can_be_trained_alone(tmp_path, monkeypatch):
     assert isinstance(card["seconds"], int)
 
 
-@pytest.mark.parametrize("option", ["--learned", "--classical"])
+def test_the_verifier_can_be_trained_alone(tmp_path, monkeypatch):
+    pytest.importorskip("torch")
+    known = load_learned()
+    write_selector(load_classical(), replace(known, verifier=None), tmp_path / "start.npz")
+    (tmp_path / "start.json").write_text('{"seed": 7}')
+    nothing = Pictures(Material([], [], [], []), Material([], [], [], []), [], [])
+    monkeypatch.setattr(train, "read_pictures", lambda *_: nothing)
+    monkeypatch.setattr(learned, "learn_verifier", lambda *_: known.verifier)
+    monkeypatch.setattr(learned, "fit_place_pairs", lambda _, scorer, seed: known.pairs)
+    train.train_verifier(tmp_path, tmp_path / "new.npz", tmp_path / "start.npz")
+    made = load_learned(tmp_path / "new.npz")
+    assert made.verifier is not None
+    assert made.verifier.nodes == known.verifier.nodes
+    assert made.places.base == known.places.base
+    card = json.loads((tmp_path / "new.json").read_text())
+    assert card["seed"] == 7
+    assert card["verifier"]["steps"] == RegionTraining().verifier_steps
+    assert isinstance(card["verifier"]["seconds"], int)
+
+
+@pytest.mark.parametrize("option", ["--learned", "--classical", "--verifier"])
 def test_what_keeps_a_part_of_another_file_must_name_it(option, tmp_path, capsys):
     assert main(["train", "regions", "--data", str(tmp_path), "--out", str(tmp_path / "a.npz"), option]) == 2
     assert f"{option} keeps the" in capsys.readouterr().err

@@ -8,10 +8,18 @@ import pytest
 
 from lightgesture.features.find.locator import DETAIL
 from lightgesture.training.nets.locator_samples import LocatorSamples, make_targets, warp
-from lightgesture.training.nets.refiner_samples import RefinerSamples, cut_turned, hard_regions, target_edges
+from lightgesture.training.nets.window_samples import (
+    REFINER,
+    VERIFIER,
+    WindowSamples,
+    cut_turned,
+    hard_regions,
+    target_edges,
+)
 from lightgesture.training.pictures import light
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.light import photometric
+from lightgesture.training.regions.nets import larger_net
 
 
 def a_picture(boxes=((120, 80, 60, 80),)):
@@ -63,11 +71,13 @@ def test_samples_repeat_for_a_seed(seed):
 
     false = np.array([[10, 10, 30, 40.0]], np.float32)
     kinds = [[(picture, false)] for picture in (*pictures, *empty, *pictures)]
-    drawn, repeated = (RefinerSamples(*kinds).draw(np.random.default_rng(seed)) for _ in "ab")
-    for one, other in zip(drawn, repeated, strict=True):
-        np.testing.assert_array_equal(one, other)
-    assert drawn[0].shape == (8, 32, 32, 4)
-    assert set(drawn[1][:, 0]) <= {0.0, 1.0}
+    for settings, channels in ((REFINER, 4), (VERIFIER, 3)):
+        samples = WindowSamples(*kinds, None, [], settings)
+        drawn, repeated = (samples.draw(np.random.default_rng(seed)) for _ in "ab")
+        for one, other in zip(drawn, repeated, strict=True):
+            np.testing.assert_array_equal(one, other)
+        assert drawn[0].shape == (8, 32, 32, channels)
+        assert set(drawn[1][:, 0]) <= {0.0, 1.0}
 
 
 def test_targets_are_hottest_in_the_middle_and_measure_to_the_edges():
@@ -113,17 +123,22 @@ def test_without_any_change_the_light_stays_and_each_change_is_felt(monkeypatch)
 
 
 @pytest.mark.slow
-def test_two_steps_train_both_nets_and_go_on_from_their_checkpoints(tmp_path):
+def test_two_steps_train_the_nets_and_go_on_from_their_checkpoints(tmp_path):
     pytest.importorskip("torch")
     from lightgesture.training.nets.locator import train_locator
     from lightgesture.training.nets.refiner import train_refiner
+    from lightgesture.training.nets.verifier import train_verifier
 
     pictures, empty, said = [a_picture()], [a_picture(())], []
     locator = train_locator(
         LocatorSamples(pictures, empty, pictures), 2, "float32", None, 0, tmp_path / "locator.pt", said.append
     )
-    windows = RefinerSamples(*(hard_regions(part, locator) for part in (pictures, empty, pictures)))
+    kinds = [hard_regions(part, locator) for part in (pictures, empty, pictures)]
+    windows = WindowSamples(*kinds, None, [], REFINER)
     refiner = train_refiner(windows, 2, "float32", None, 0, tmp_path / "refiner.pt", said.append)
+    alone, reader = WindowSamples(*kinds, None, [], VERIFIER), larger_net("cnn")
+    verifier = train_verifier(alone, 2, "float32", reader, 0, tmp_path / "verifier.pt", said.append)
+    assert (verifier.inputs, verifier.outputs) == ({"patch": (32, 32, 3)}, ("hand",))
     told = len(said)
     again = train_refiner(windows, 2, "float32", refiner, 0, tmp_path / "refiner.pt", said.append)
     assert len(said) == told, "nothing was left to learn"

@@ -2,11 +2,15 @@
 
 import argparse
 from pathlib import Path
+from typing import Final
 
 from lightgesture.console import say
 from lightgesture.errors import ExitStatus, UsageError
 from lightgesture.training.commands.classifier import kept_text
 from lightgesture.training.commands.train import PRECISIONS, model_path
+
+KEPT: Final = {"classical": "nets", "learned": "classical trees", "verifier": "locator, refiner and trees"}
+"""What each option that trains a part alone takes from the file that --start names."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,13 +32,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps",
         type=int,
         metavar="N",
-        help="of the locator's training; the refiner's takes four fifths (default: 10000)",
+        help="of the locator's training; the refiner's takes four fifths, the verifier's half as many (default: 10000)",
     )
     parser.add_argument(
         "--start",
         metavar="NPZ",
         help="selector whose nets go on learning, 'bundled' for the one that is used by default: a third of the steps "
         "suffices",
+    )
+    parser.add_argument(
+        "--reader",
+        default="cnn",
+        metavar="NPZ",
+        help="model of train look whose larger net the verifier learns on from (default: the bundled one)",
     )
     alone = parser.add_mutually_exclusive_group()
     alone.add_argument(
@@ -46,6 +56,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--classical",
         action="store_true",
         help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
+    )
+    alone.add_argument(
+        "--verifier",
+        action="store_true",
+        help="train the net that looks again at what is in doubt, and the trees of pairs with it; the rest stays that "
+        "of --start, which must be given",
     )
     parser.add_argument(
         "--precision",
@@ -69,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
     from lightgesture.features.find.selector_file import SelectorError
     from lightgesture.training.pool.left_out import left_out
     from lightgesture.training.regions.nets import RegionTraining
-    from lightgesture.training.regions.train import train_classical, train_regions
+    from lightgesture.training.regions.train import train_classical, train_regions, train_verifier
     from lightgesture.training.time_left import NeverSilent
 
     out = model_path(args.out)
@@ -81,21 +97,24 @@ def run(args: argparse.Namespace) -> int:
     except ValueError as error:
         raise UsageError(f"--fold: {error}") from error
     start = _start(args.start)
-    if (args.classical or args.learned) and start is None:
-        alone, kept = ("--classical", "nets") if args.classical else ("--learned", "classical trees")
-        raise UsageError(
-            f"{alone} keeps the {kept} of another file; name it by --start, such as --start bundled"
-        )
-    settings = RegionTraining(precision=args.precision, start=start)
+    for alone, kept in KEPT.items():
+        if getattr(args, alone) and start is None:
+            raise UsageError(
+                f"--{alone} keeps the {kept} of another file; name it by --start, such as --start bundled"
+            )
+    settings = RegionTraining(precision=args.precision, start=start, reader=args.reader)
     if args.steps is not None:
         settings = settings.of_steps(args.steps)
     try:
         with NeverSilent((lambda _: None) if args.quiet else say) as progress:
+            data = Path(args.data)
             if args.classical and start is not None:
-                train_classical(Path(args.data), out, start, args.seed, args.jobs, without, progress)
+                train_classical(data, out, start, args.seed, args.jobs, without, progress)
+            elif args.verifier and start is not None:
+                train_verifier(data, out, start, args.seed, args.jobs, without, settings, progress)
             else:
                 train_regions(
-                    *(Path(args.data), out, args.seed, args.jobs, without, settings, progress),
+                    *(data, out, args.seed, args.jobs, without, settings, progress),
                     keeps_classical=args.learned,
                 )
     except SelectorError as error:

@@ -2,16 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 
-from lightgesture.features.find import locator, refiner
+from lightgesture.features.find import locator, refiner, verifier
 from lightgesture.features.net.network import WEIGHTED, Node, Shape, infer_shapes, taps
 from lightgesture.models import cnn
 
 LOCATOR_INPUT: Shape = (256, 320, 3)
 """A picture of 320 × 240, filled up to multiples of 32 as `features.find.locator` does."""
-REFINER_INPUT: Shape = (32, 32, 4)
+REFINER_INPUT: Shape = (refiner.WINDOW.size, refiner.WINDOW.size, 4)
 """A window: standardised blue, green, red and luma."""
 LOCATOR_OUTPUTS = (locator.HEAT, locator.EDGES)
 REFINER_OUTPUTS = (refiner.HAND, refiner.BOX)
+VERIFIER_INPUT: Shape = (verifier.WINDOW.size, verifier.WINDOW.size, 3)
+"""A patch: blue, green and red, standardised by themselves."""
+VERIFIER_OUTPUTS = (verifier.HAND,)
 
 
 def separable(name: str, source: str, channels: int, stride: int = 1, kernel: int = 3) -> list[Node]:
@@ -125,7 +128,16 @@ def hand_nodes(classes: int, contours: int, size: str = "medium") -> tuple[Node,
 
 
 def teacher_nodes(classes: int, channels: tuple[int, int, int] = (24, 48, 80)) -> tuple[Node, ...]:
-    """A larger net for the same patches, which a hand net learns from; it never leaves the training."""
+    """A larger net for the same patches, which a hand net learns from, and which is asked for a second look."""
+    return (*_larger_body(channels), Node(cnn.SCORES, "dense", (WHOLE,), classes))
+
+
+def verifier_nodes(channels: tuple[int, int, int] = (24, 48, 80)) -> tuple[Node, ...]:
+    """The layers of a larger net that reads hands, which it learns on from, and a last one that says hand or not."""
+    return (*_larger_body(channels), Node(verifier.HAND, "dense", (WHOLE,), 1))
+
+
+def _larger_body(channels: tuple[int, int, int]) -> tuple[Node, ...]:
     fine, middle, coarse = channels
     return (
         Node("stem", "conv", (cnn.PATCH,), fine, 3, 1, "relu6"),
@@ -137,7 +149,6 @@ def teacher_nodes(classes: int, channels: tuple[int, int, int] = (24, 48, 80)) -
         Node("coarse", "conv", ("middle2",), coarse, 3, 2, "relu6"),
         *convolved("coarse1", "coarse", coarse, 2),
         Node(WHOLE, "dense", ("coarse1",), 96, activation="relu6"),
-        Node(cnn.SCORES, "dense", (WHOLE,), classes),
     )
 
 

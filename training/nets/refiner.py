@@ -11,11 +11,11 @@ from torch.nn import functional
 from lightgesture.features.find.refiner import BOX, HAND, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import REFINER_INPUT, REFINER_OUTPUTS, refiner_nodes
-from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, hand_loss, train_net
 from lightgesture.training.nets.quantise import quantise
-from lightgesture.training.nets.refiner_samples import RefinerSamples
 from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
+from lightgesture.training.nets.window_samples import WindowSamples
 
 PICTURES = 32
 """Of one batch."""
@@ -26,7 +26,7 @@ LEAST_SIDE = 0.02
 
 
 def train_refiner(
-    samples: RefinerSamples,
+    samples: WindowSamples,
     steps: int,
     precision: Precision,
     start: IntegerNetwork | None,
@@ -55,11 +55,7 @@ def train_refiner(
 def refiner_loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:
     """Cross-entropy of hand or not, GIoU and smoothed distance of the boxes of hands."""
     (targets,) = truth
-    weight, hand = targets[:, 5], targets[:, 0]
-    each = functional.binary_cross_entropy_with_logits(
-        outputs[HAND][:, 0], hand * 0.98 + 0.01, reduction="none"
-    )
-    loss = (each * weight).sum() / weight.sum().clamp(min=1)
+    loss, hand = hand_loss(outputs[HAND][:, 0], targets), targets[:, 0]
     if not bool((hand > 0).any()):
         return loss
     own, wanted = outputs[BOX][hand > 0], targets[hand > 0, 1:5]

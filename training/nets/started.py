@@ -16,18 +16,25 @@ STARTED: Final = 0.4
 """Share of the usual rate at which a net goes on that has learnt already."""
 
 
-def start_from(module: TorchNetwork, network: IntegerNetwork, batch: Mapping[str, Tensor]) -> None:
+def start_from(
+    module: TorchNetwork, network: IntegerNetwork, batch: Mapping[str, Tensor], *, but_the_last: bool = False
+) -> None:
     """Give the module the weights of a network of the same layers, changed in place; strides and the size of pictures
     may be others, since what edges and fingers look like changes little with them.
+
+    but_the_last: the last layer is another one and stays as it is, for a net that is to answer another question.
 
     batch: typical inputs. The integers hold no batch normalisation; each is set to what it would be if it changed
     nothing on this batch, so that the net begins where the other one ended. Raises UsageError for other layers.
     """
-    if _layers(module.nodes) != _layers(network.nodes) or not _same_shapes(module, network):
+    nodes, others = module.nodes, network.nodes
+    if but_the_last:
+        nodes, others = nodes[:-1], others[:-1]
+    if _layers(nodes) != _layers(others) or not _same_shapes(module, network, nodes):
         raise UsageError("the file to start from holds a net of other layers; start from one of this version")
     tensors = dict(batch)
     with torch.no_grad():
-        for node in module.nodes:
+        for node in nodes:
             if node.name in module.layers:
                 _load(module, network, node)
             if node.name in module.norms:
@@ -40,10 +47,12 @@ def _layers(nodes: Sequence[Node]) -> list[Node]:
     return [replace(node, stride=1) for node in nodes]
 
 
-def _same_shapes(module: TorchNetwork, network: IntegerNetwork) -> bool:
-    """Whether each layer of the module has as many weights as that of the network."""
+def _same_shapes(module: TorchNetwork, network: IntegerNetwork, nodes: Sequence[Node]) -> bool:
+    """Whether each of the nodes has as many weights in the module as in the network."""
     return all(
-        layer.weight.numel() == network.weights[name].weights.size for name, layer in module.layers.items()
+        module.layers[node.name].weight.numel() == network.weights[node.name].weights.size
+        for node in nodes
+        if node.name in module.layers
     )
 
 

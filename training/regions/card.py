@@ -1,7 +1,9 @@
 """The card of a selector: what it learnt from, and how."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -34,7 +36,7 @@ def write_card(
 
     both = pictures.for_nets, pictures.for_trees
     card = {
-        "model": "selector of hand regions: locator and refiner nets with trees; the classical choice beside them",
+        "model": "selector of hand regions: locator, refiner and verifier with trees; the classical choice beside them",
         "data": {
             "whole frames (webcam/train, single pictures of frames/subhi)": sum(
                 len(part.frames) for part in both
@@ -46,15 +48,19 @@ def write_card(
             "sets of negatives used": list(NEGATIVE_SETS),
             "kept from the nets, for the trees": f"one in {ONE_IN} sources, of real divers none",
         },
-        CARD_KEY: without.to_card(),
+        **told_of(without, seed),
         "never trained on": "frames/robochatgest, frames/drone and its people in hands/train (emre_drone), "
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
-        "seed": seed,
         "nets_went_on_from_the_selector_of_sha256": settings.origin,
+        "verifier_went_on_from_the_larger_net_of_sha256": settings.reader_origin,
         "classical_trees": "of that selector" if keeps_classical else "fitted with it",
-        "steps": {"locator": settings.locator_steps, "refiner": settings.refiner_steps},
+        "steps": {
+            "locator": settings.locator_steps,
+            "refiner": settings.refiner_steps,
+            "verifier": settings.verifier_steps,
+        },
         "seconds": seconds,
         "peak_memory_mib": peak_memory_mib(),
         "versions": {
@@ -64,5 +70,21 @@ def write_card(
             "torch": str(torch.__version__),
         },
     }
+    _write(out, card)
+
+
+def extend_card(start: Path, out: Path, part: str, told: Mapping[str, Any]) -> None:
+    """Write the card of the file `start`, where it has one, beside `out`, with a word of a part that was made anew."""
+    card = start.with_suffix(".json")
+    content = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {}
+    _write(out, {**content, part: dict(told)})
+
+
+def told_of(without: LeftOut, seed: int) -> dict[str, Any]:
+    """What a card tells of every training."""
+    return {CARD_KEY: without.to_card(), "seed": seed}
+
+
+def _write(out: Path, card: Mapping[str, Any]) -> None:
     with replacing(out.with_suffix(".json")) as temporary:
         temporary.write_text(json.dumps(card, indent=2) + "\n", encoding="utf-8")

@@ -1,5 +1,5 @@
-"""The learned choice from its pictures: both nets, then the trees that weigh what the nets say of people whom they have
-not seen."""
+"""The learned choice from its pictures: the nets, and the trees that weigh what these say of people whom they have not
+seen."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,12 +9,14 @@ from typing import Final
 import numpy as np
 
 from lightgesture.errors import InputError
-from lightgesture.features.find.learned import Places
+from lightgesture.features.find.learned import Places, Scorer
 from lightgesture.features.find.selector_file import LearnedParts
+from lightgesture.features.find.trees import Trees
+from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import LeftOut
 from lightgesture.training.pool.picture_pool import Ingredients, compose_pool
-from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets
+from lightgesture.training.regions.nets import Progress, RegionTraining, learn_nets, learn_verifier
 from lightgesture.training.regions.region_pictures import (
     COMPOSED,
     ONE_IN,
@@ -79,10 +81,28 @@ def learn_choice(
     """Nets and trees; what is done of the nets lies in `folder`."""
     nets = learn_nets(pictures.for_nets, pictures.composed, folder, seed, settings, progress)
     progress("fitting the trees that weigh both nets")
-    first, second = tree_pictures(pictures.for_trees, pictures.unseen, seed)
+    first, _ = tree_pictures(pictures.for_trees, pictures.unseen, seed)
     places = fit_places(look(first, Places(*nets)), seed)
-    pairs = fit_place_pairs(look(second, Places(*nets)), places, seed)
-    return LearnedParts(*nets, places, pairs)
+    return verified_choice(pictures, *nets, places, folder, seed, settings, progress)
+
+
+def verified_choice(
+    pictures: Pictures,
+    locator: IntegerNetwork,
+    refiner: IntegerNetwork,
+    places: Trees,
+    folder: Path,
+    seed: int,
+    settings: RegionTraining,
+    progress: Progress,
+) -> LearnedParts:
+    """Both nets and the trees of places as they are, with a verifier of what they leave in doubt, and with trees of
+    pairs that know what it says."""
+    verifier = learn_verifier(pictures.for_nets, pictures.composed, locator, folder, seed, settings, progress)
+    progress("fitting the trees of pairs")
+    _, second = tree_pictures(pictures.for_trees, pictures.unseen, seed)
+    pairs = fit_place_pairs(look(second, Places(locator, refiner)), Scorer(places, verifier), seed)
+    return LearnedParts(locator, refiner, places, pairs, verifier)
 
 
 def tree_pictures(

@@ -1,7 +1,7 @@
 """The training of the selector from end to end: pictures, nets, the trees of either choice, the file and its card."""
 
-import json
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -9,15 +9,20 @@ import numpy as np
 
 from lightgesture.features.compiled.loops import best_loops
 from lightgesture.features.find.selector_file import ClassicalParts, load_classical, load_learned
-from lightgesture.results.atomic import replacing
 from lightgesture.training.model_files import write_classical, write_selector
 from lightgesture.training.nets.checkpoints import checkpoint_folder, need_torch
 from lightgesture.training.nets.spent_time import SpentTime
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.regions.bank import make_bank
-from lightgesture.training.regions.card import write_card
-from lightgesture.training.regions.learned import Pictures, learn_choice, read_pictures, tree_pictures
+from lightgesture.training.regions.card import extend_card, told_of, write_card
+from lightgesture.training.regions.learned import (
+    Pictures,
+    learn_choice,
+    read_pictures,
+    tree_pictures,
+    verified_choice,
+)
 from lightgesture.training.regions.nets import Progress, RegionTraining
 from lightgesture.training.regions.region_pictures import Material, variants
 from lightgesture.training.regions.trees import fit_pairs, fit_regions
@@ -48,7 +53,12 @@ def train_regions(
     """
     need_torch()
     settings, without = settings or RegionTraining(), without or LeftOut()
-    told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": settings.origin}
+    told = {
+        CARD_KEY: without.to_card(),
+        "settings": repr(settings),
+        "start": settings.origin,
+        "reader": settings.reader_origin,
+    }
     folder = checkpoint_folder(out, {"seed": seed, **told})
     with SpentTime(folder) as spent:
         progress = spent.kept_by(progress)
@@ -86,15 +96,41 @@ def train_classical(
     pictures = read_pictures(data, without, seed, jobs, folder, progress, CLASSICAL_COMPOSED)
     progress("fitting the classical trees")
     write_classical(_classical(data, pictures, without, seed), start, out)
-    card = start.with_suffix(".json")
-    content = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {}
-    content["classical_trees"] = {
-        "fitted_apart_from_the_nets": True,
-        CARD_KEY: without.to_card(),
-        "seed": seed,
+    extend_card(start, out, "classical_trees", {"fitted_apart_from_the_nets": True, **told_of(without, seed)})
+
+
+def train_verifier(
+    data: Path,
+    out: Path,
+    start: Path,
+    seed: int = 0,
+    jobs: int = 1,
+    without: LeftOut | None = None,
+    settings: RegionTraining | None = None,
+    progress: Progress = lambda _: None,
+) -> None:
+    """Train the verifier and the trees of pairs, which know what it says; all else of the file is that of `start`, and
+    the card is its card with a word of this. What is done lies in a folder beside `out`.
+
+    Raises InputError, SelectorError, UsageError.
+    """
+    need_torch()
+    settings, without = replace(settings or RegionTraining(), start=start), without or LeftOut()
+    known, classical = load_learned(start), load_classical(start)
+    told = {
+        "steps": settings.verifier_steps,
+        "went_on_from_the_larger_net_of_sha256": settings.reader_origin,
     }
-    with replacing(out.with_suffix(".json")) as temporary:
-        temporary.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    kept = {CARD_KEY: without.to_card(), "start": settings.origin}
+    folder = checkpoint_folder(out, {"seed": seed, **told, **kept})
+    with SpentTime(folder) as spent:
+        progress = spent.kept_by(progress)
+        pictures = read_pictures(data, without, seed, jobs, folder, progress)
+        parts = known.locator, known.refiner, known.places
+        learned = verified_choice(pictures, *parts, folder, seed, settings, progress)
+        write_selector(classical, learned, out)
+        told |= {"seconds": spent.whole_seconds, **told_of(without, seed)}
+        extend_card(start, out, "verifier", told)
 
 
 def _classical(data: Path, pictures: Pictures, without: LeftOut, seed: int) -> ClassicalParts:

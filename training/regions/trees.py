@@ -29,11 +29,12 @@ from lightgesture.features.find.classical import (
     with_bank,
 )
 from lightgesture.features.find.learned import Places, scored_places
+from lightgesture.features.find.learned import Scorer as PlaceScorer
 from lightgesture.features.find.locator import Peaks
 from lightgesture.features.find.proposals import Proposals, whole_regions, without_forearms
 from lightgesture.features.find.refiner import Refined
 from lightgesture.features.find.selector_file import ClassicalParts
-from lightgesture.features.find.trees import FlatTrees, Trees, evaluate
+from lightgesture.features.find.trees import FlatTrees, Trees
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.types import Float
 from lightgesture.training.pictures.boxed import BoxedPicture
@@ -256,12 +257,12 @@ def fit_places(seen: Iterable[Seen], seed: int) -> Trees:
     return fit_trees(rows, targets, PLACE_TREES, seed)
 
 
-def fit_place_pairs(seen: Iterable[Seen], places: Trees, seed: int) -> Trees:
-    """Trees that predict the lower IoU of a pair. `seen` must be other pictures than those of `places`, and every hand
-    in them must have its box."""
+def fit_place_pairs(seen: Iterable[Seen], scorer: PlaceScorer, seed: int) -> Trees:
+    """Trees that predict the lower IoU of a pair. `seen` must be other pictures than those that the scorer learnt from,
+    and every hand in them must have its box."""
     rows, targets = [np.zeros((0, PAIR_COLUMNS), np.float32)], [np.zeros(0, np.float32)]
     for one in seen:
-        scores = evaluate(places, describe_places(one.peaks, one.refined, one.size))
+        scores = scorer.process(one.colour, one.peaks, one.refined)
         kept, items = scored_places(one.colour, one.peaks, one.refined, scores)
         pairs, numbers = pair_numbers(items, one.size, one.peaks.face)
         rows.append(numbers)

@@ -1,6 +1,7 @@
-"""Samples for the refiner: windows round hands, round what the locator took for hands, and elsewhere."""
+"""Samples for refiner and verifier: windows round hands, round what the locator took for hands, and elsewhere."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import cv2
@@ -8,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.find import refiner, verifier
 from lightgesture.features.find.locator import Locator, find_peaks
-from lightgesture.features.find.refiner import SIZE, cut_windows, windows_round
+from lightgesture.features.find.windows import WindowSettings, cut_windows, windows_round
 from lightgesture.features.geometry import pairwise_iou
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.features.patch import Square
@@ -24,11 +26,8 @@ Random = np.random.Generator
 
 WINDOWS: Final = 8
 """Of one picture."""
-REAL_SHARE: Final = 0.26
 EMPTY_SHARE: Final = 0.08
-DIVER_SHARE: Final = 0.33
-"""Of samples, those of whole frames, of water without a hand and of real divers; the rest is composed, and all that
-would be of divers where there are none."""
+"""Of samples, those of water without a hand."""
 HAND, HARD, BESIDE, FACE = 0.55, 0.85, 0.93, 0.97
 """Up to which draw a window lies on a hand, on a false peak, beside a hand, on a face; beyond, anywhere."""
 JITTER: Final = 0.1
@@ -39,10 +38,6 @@ TURNED_SHARE: Final = 0.4
 """Of windows, those that are turned."""
 TURN_RAD: Final = 0.12
 """Their standard deviation."""
-HAND_IOU: Final = 0.35
-NONE_IOU: Final = 0.2
-"""Overlap from which a window is one of a hand, and below which it is none; between, it does not count."""
-
 MOST_PEAKS: Final = 12
 LEAST_HEAT: Final = 0.03
 """More and weaker peaks than are looked at on the board."""
@@ -50,6 +45,45 @@ FALSE_IOU: Final = 0.3
 """A peak whose box overlaps every hand less is false."""
 MOST_FALSE: Final = 8
 """False peaks kept of one picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class SampleSettings:
+    """What a net that looks at windows learns from."""
+
+    window: WindowSettings
+    real_share: float
+    """Of samples, those of whole frames in rooms, 0 to 1."""
+    diver_share: float
+    """Those of real divers, 0 to 1; where there are none, composed ones. The rest is of water without a hand
+    (`EMPTY_SHARE`) and composed."""
+    none_iou: float
+    """Overlap below which a window is none of a hand; between this and `hand_iou` it does not count."""
+    hand_iou: float
+    """Overlap from which a window is one of a hand."""
+    sees: Callable[[Image, Float], Float]
+    """What the net sees of a window, uint8 (size, size, 3), of a picture with these `channel_tables`: float32 (size,
+    size, channels)."""
+
+
+def in_its_picture(cut: Image, tables: Float) -> Float:
+    """Colours by the tables of the picture, luma by the window's own: float32 (size, size, 4)."""
+    luma, table = luma_tables(cut[None])
+    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma[0], table)]).astype(np.float32)
+
+
+def by_itself(cut: Image, _: Float) -> Float:
+    """Colours by the window's own tables: float32 (size, size, 3)."""
+    return np.asarray(cv2.LUT(cut, channel_tables(cut)), np.float32)
+
+
+REFINER: Final = SampleSettings(
+    refiner.WINDOW, real_share=0.26, diver_share=0.33, none_iou=0.2, hand_iou=0.35, sees=in_its_picture
+)
+VERIFIER: Final = SampleSettings(
+    verifier.WINDOW, real_share=0.18, diver_share=0.45, none_iou=0.3, hand_iou=0.45, sees=by_itself
+)
+"""What is verified is a refined box, which is a hand's or is not; more real divers, whose water it is there for."""
 
 
 def hard_regions(
@@ -90,12 +124,6 @@ def cut_turned(image: Image, window: Square, size: int, turn: float, flip: bool)
     return np.ascontiguousarray(cut[:, ::-1]) if flip else cut
 
 
-def standardised(cut: Image, tables: Float) -> Float:
-    """float32 (size, size, 4): colours by the tables of the picture, luma by the window's own."""
-    luma, table = luma_tables(cut[None])
-    return np.dstack([cv2.LUT(cut, tables), cv2.LUT(luma[0], table)]).astype(np.float32)
-
-
 def target_edges(box: NDArray[np.floating], window: Square, turn: float, flip: bool) -> Float:
     """Left, upper, right and lower edge of a hand from the window's middle in window sides, after turn and mirror."""
     left, top, side = window
@@ -108,7 +136,7 @@ def target_edges(box: NDArray[np.floating], window: Square, turn: float, flip: b
     return np.concatenate([middle - reach, middle + reach]).astype(np.float32)
 
 
-class RefinerSamples:
+class WindowSamples:
     """Draws windows without end. Each kind is a list of (picture, float (n, 4) boxes of false peaks), at least one."""
 
     def __init__(
@@ -116,24 +144,26 @@ class RefinerSamples:
         frames: Sequence[tuple[BoxedPicture, Float]],
         empty: Sequence[tuple[BoxedPicture, Float]],
         composed: Sequence[tuple[BoxedPicture, Float]],
-        divers: RealDivers | None = None,
-        mistaken: Sequence[Float] = (),
+        divers: RealDivers | None,
+        mistaken: Sequence[Float],
+        settings: SampleSettings,
     ) -> None:
         """mistaken: boxes of false peaks of each of the divers' pictures."""
+        self.settings = settings
         self._frames, self._empty, self._composed = frames, empty, composed
         self._divers, self._mistaken = divers, mistaken
 
     def draw(self, rng: Random) -> tuple[Float, Float]:
-        """Windows, float32 (n, 32, 32, 4), and targets (n, 6): hand or not, four edges, weight."""
-        kind = rng.random()
+        """Windows, float32 (n, size, size, channels), and targets (n, 6): hand or not, four edges, weight."""
+        own, kind = self.settings, rng.random()
         pictures = self._composed
-        if kind < REAL_SHARE + EMPTY_SHARE:
-            pictures = self._frames if kind < REAL_SHARE else self._empty
+        if kind < own.real_share + EMPTY_SHARE:
+            pictures = self._frames if kind < own.real_share else self._empty
         picture, hard = pictures[int(rng.integers(len(pictures)))]
-        if self._divers is not None and kind > 1.0 - DIVER_SHARE:
+        if self._divers is not None and kind > 1.0 - own.diver_share:
             place, picture = self._divers.draw(rng)
             hard = self._mistaken[place]
-        image = photometric(picture.image, rng, kind < REAL_SHARE)
+        image = photometric(picture.image, rng, kind < own.real_share)
         tables = channel_tables(image)
         hands = np.array(picture.boxes, np.float64).reshape(-1, 4)
         faces = np.array(picture.faces, np.float64).reshape(-1, 4)
@@ -141,13 +171,13 @@ class RefinerSamples:
         windows, targets = [], []
         for _ in range(WINDOWS):
             box = self._box(rng, hands, np.asarray(hard, np.float64), faces, image.shape[:2])
-            window = windows_round(box[None], image)[0]
+            window = windows_round(box[None], image, own.window)[0]
             turn = rng.normal(0, TURN_RAD) if rng.random() < TURNED_SHARE else 0.0
             flip = bool(rng.random() < 0.5)
-            cut = cut_turned(image, window, SIZE, turn, flip)
-            windows.append(standardised(cut, tables))
+            cut = cut_turned(image, window, own.window.size, turn, flip)
+            windows.append(own.sees(cut, tables))
             target = self._target(box, hands, window, turn, flip)
-            if target[0] == 0.0 and len(ignored) and pairwise_iou(box[None], ignored).max() >= NONE_IOU:
+            if target[0] == 0.0 and len(ignored) and pairwise_iou(box[None], ignored).max() >= own.none_iou:
                 target[5] = 0.0
             targets.append(target)
         return np.stack(windows), np.stack(targets)
@@ -159,10 +189,10 @@ class RefinerSamples:
         target = np.zeros(6, np.float32)
         best = float(overlaps.max()) if len(overlaps) else 0.0
         target[5] = 1.0
-        if best >= HAND_IOU:
+        if best >= self.settings.hand_iou:
             target[0] = 1.0
             target[1:5] = target_edges(hands[overlaps.argmax()], window, turn, flip)
-        elif best >= NONE_IOU:
+        elif best >= self.settings.none_iou:
             target[5] = 0.0
         return target
 

@@ -175,8 +175,17 @@ def test_a_file_with_shipped_parts_has_left_nothing_out(data, tmp_path):
     file.with_suffix(".json").write_text(json.dumps(card), encoding="utf-8")
     assert shared_parts("classical", file) == ("trees", "trees of pairs", "bank")
     assert shared_parts("learned", file) == ("locator", "refiner", "verifier")
-    assert shared_parts("learned", file, file) == ("locator", "refiner", "trees", "trees of pairs")
-    for selector, parts in (("classical", "trees, trees of pairs, bank"), ("learned", "locator, refiner")):
+    assert shared_parts("learned", file, file) == (
+        "locator",
+        "refiner",
+        "verifier",
+        "trees",
+        "trees of pairs",
+    )
+    for selector, parts in (
+        ("classical", "trees, trees of pairs, bank"),
+        ("learned", "locator, refiner, verifier"),
+    ):
         told = []
         assert run_left_out(selector, [str(file)], read_frames(data), show_nothing, told.append) == []
         assert len(told) == 1

@@ -49,10 +49,11 @@ def _layers(nodes: Sequence[Node]) -> list[Node]:
 
 def _same_shapes(module: TorchNetwork, network: IntegerNetwork, nodes: Sequence[Node]) -> bool:
     """Whether each of the nodes has as many weights in the module as in the network."""
+    layers = {node.name: module.layers[node.name] for node in nodes if node.name in module.layers}
     return all(
-        module.layers[node.name].weight.numel() == network.weights[node.name].weights.size
-        for node in nodes
-        if node.name in module.layers
+        isinstance(layer, nn.Conv2d | nn.Linear)
+        and layer.weight.numel() == network.weights[name].weights.size
+        for name, layer in layers.items()
     )
 
 

@@ -1,4 +1,5 @@
-"""The finder on dives that it has not seen: `python -m lightgesture.benchmarks.studies.dives --parts DIR --start FILE`.
+"""The finder on dives that it has not seen: `python -m lightgesture.benchmarks.studies.dives --parts DIR --start FILE
+--reader FILE`.
 
 The dives of the real divers are dealt into folds. For each fold a finder is trained from the rest, nets and trees, and
 finds and reads the pictures of its own fold; the tables have every picture once. The finder must start from a file that
@@ -75,9 +76,8 @@ def run(args: argparse.Namespace) -> None:
         folds.append((method, [frame for frame in frames if fold_of_dive(frame.dive) == fold]))
     report, scored = evaluate_folds(folds, progress_bar)
     save_rows(parts, scored.hands, scored.frames)
-    print_and_write(
-        report.tables, args.out, {"steps": args.steps, "start": settings.origin, "seed": args.seed}
-    )
+    told = {"steps": args.steps, "start": settings.start_digest(), "reader": settings.reader_digest()}
+    print_and_write(report.tables, args.out, {**told, "seed": args.seed})
 
 
 def _selector(pictures: Pictures, parts: Path, fold: int, seed: int, settings: RegionTraining) -> Path:
@@ -86,8 +86,9 @@ def _selector(pictures: Pictures, parts: Path, fold: int, seed: int, settings: R
     told = {
         "seed": seed,
         "fold": fold,
-        "settings": repr(replace(settings, start=None)),
-        "start": settings.origin,
+        "settings": repr(replace(settings, start=None, reader="")),
+        "start": settings.start_digest(),
+        "reader": settings.reader_digest(),
     }
     folder = checkpoint_folder(file, told)
     if not file.is_file():
@@ -116,9 +117,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--reader",
-        default=DEFAULT,
+        required=True,
         metavar="NPZ",
-        help="model whose larger net the verifier learns on from (default cnn, which has seen all dives)",
+        help="model of train look whose larger net the verifier learns on from; it saw no diver",
     )
     parser.add_argument("--model", default=DEFAULT, help="reads what is found (default cnn)")
     parser.add_argument("--precision", choices=PRECISIONS, default="float32", help="see train regions")

@@ -58,7 +58,7 @@ class Places:
         return peaks, self.refiner.process(colour, peaks.boxes, tables)
 
 
-class Scorer:
+class PlaceScorer:
     """How likely places are hands, by all that is known of them."""
 
     def __init__(self, places: Trees, verifier: IntegerNetwork | None) -> None:
@@ -79,7 +79,10 @@ class LearnedSelector:
     settings: SelectorSettings = LEARNED
 
     def __init__(self, parts: LearnedParts) -> None:
-        self._nets, self._scorer = Places(parts.locator, parts.refiner), Scorer(parts.places, parts.verifier)
+        self._nets, self._scorer = (
+            Places(parts.locator, parts.refiner),
+            PlaceScorer(parts.places, parts.verifier),
+        )
         self._pairs = parts.pairs
 
     def process(self, colour: ColourMap) -> Candidates:

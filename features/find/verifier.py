@@ -10,9 +10,10 @@ from typing import Final
 import numpy as np
 
 from lightgesture.features.colour import ColourMap
+from lightgesture.features.find.candidates import logit
 from lightgesture.features.find.windows import WindowSettings, windows_in
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.features.net.runner import Network
+from lightgesture.features.net.runner import Network, logistic
 from lightgesture.features.standardise import patch_levels
 from lightgesture.features.types import Float
 
@@ -20,8 +21,7 @@ INPUT, HAND = "patch", "hand"
 """Tensors of the net: blue, green and red, each patch standardised by itself as readers see it; the logit of a hand."""
 WINDOW: Final = WindowSettings(size=32, context=1.4)
 DOUBTED: Final = (0.2, 0.8)
-"""Least and largest score of a place that is verified, 0 to 1. Of a dive's frame that is 0.4 places on average; a wider
-range costs more and tells no more hands."""
+"""Least and largest score of a place that is verified, 0 to 1: a wider range costs more and tells no more hands."""
 MOST_VERIFIED: Final = 4
 """Places of a frame that are verified, the best, so that no picture costs more."""
 WEIGHT: Final = 0.5
@@ -30,8 +30,6 @@ from, so their mistakes are not independent, and the whole of both would say too
 EVEN: Final = 1.7
 """Logit of the net at which a score stays as it is. Half of what it learnt from are hands, of places in doubt few: with
 this, a score stands for what it did, and of negatives fewer are taken for hands than without the net."""
-FINITE: Final = 1e-3
-"""Distance that a score keeps from 0 and 1, so that its log-odds are finite."""
 
 
 class Verifier:
@@ -58,6 +56,4 @@ class Verifier:
 def together(scores: Float, logits: Float) -> Float:
     """float32 (n,): scores, 0 to 1, and the verifier's logits as one score, by the sum of their log-odds
     (`WEIGHT`, `EVEN`)."""
-    held = np.clip(scores, FINITE, 1.0 - FINITE)
-    odds = held / (1.0 - held) * np.exp(WEIGHT * (logits - EVEN))
-    return np.asarray(odds / (1.0 + odds), np.float32)
+    return logistic(logit(scores) + WEIGHT * (logits - EVEN))

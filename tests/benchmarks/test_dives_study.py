@@ -10,8 +10,11 @@ import pytest
 from lightgesture.benchmarks.divers.rows import FRAMES_FILE
 from lightgesture.benchmarks.studies import dives
 from lightgesture.features.find.selector_file import load_learned
+from lightgesture.models.loading import SHIPPED
+from lightgesture.training.nets.checkpoints import sha256_of
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.real_divers import RealDiver
+from lightgesture.training.regions import nets
 from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.region_pictures import Material
 
@@ -58,7 +61,8 @@ def test_each_fold_learns_from_all_dives_but_its_own(monkeypatch, tmp_path, data
     monkeypatch.setattr(dives, "learn_choice", learn)
     monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
     parts, out = tmp_path / "parts", tmp_path / "out.json"
-    arguments = ["--data", str(data), "--parts", str(parts), "--steps", "10", "--out", str(out)]
+    arguments = ["--data", str(data), "--parts", str(parts), "--steps", "10", "--reader", "cnn"]
+    arguments += ["--out", str(out)]
     assert dives.main(arguments) == 0
     assert len(learnt) == dives.FOLDS
     for fold, own in enumerate(learnt):
@@ -66,7 +70,12 @@ def test_each_fold_learns_from_all_dives_but_its_own(monkeypatch, tmp_path, data
         assert (parts / f"fold{fold}.npz").is_file()
     with (parts / FRAMES_FILE).open(encoding="utf-8") as stream:
         assert sorted(row["dive"] for row in csv.DictReader(stream)) == sorted(DIVES)
-    assert json.loads(out.read_text())["settings"] == {"steps": 10, "start": None, "seed": 0}
+    assert json.loads(out.read_text())["settings"] == {
+        "steps": 10,
+        "start": None,
+        "reader": sha256_of(SHIPPED["cnn"]),
+        "seed": 0,
+    }
     assert dives.main(arguments) == 0
     assert len(learnt) == dives.FOLDS, "what is done is not done again"
 
@@ -76,9 +85,15 @@ def test_a_folder_of_another_training_is_refused(monkeypatch, tmp_path, data, pi
     monkeypatch.setattr(dives, "learn_choice", lambda *_: load_learned())
     monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
     arguments = ["--data", str(data), "--parts", str(tmp_path / "parts"), "--fold", "1"]
+    arguments += ["--reader", "cnn"]
     assert dives.main([*arguments, "--steps", "10"]) == 0
     assert dives.main([*arguments, "--steps", "20"]) == 2
     assert "holds parts of another training (locator_steps 10 and not 20" in capsys.readouterr().err
+    other = tmp_path / "other.npz"
+    other.write_bytes(SHIPPED["cnn"].read_bytes() + b" ")
+    monkeypatch.setattr(nets, "larger_net", lambda _: None)
+    assert dives.main([*arguments, "--steps", "10", "--reader", str(other)]) == 2
+    assert "holds parts of another training" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("fold", ["5", "-1", "one"])

@@ -1,11 +1,17 @@
 """The net that looks again at places in doubt."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from lightgesture.actions.decode import SAMPLE
 from lightgesture.features.colour import ColourStage
+from lightgesture.features.find import verifier as verifying
+from lightgesture.features.find.learned import LearnedSelector
 from lightgesture.features.find.selector_file import load_learned
 from lightgesture.features.find.verifier import EVEN, MOST_VERIFIED, WEIGHT, Verifier, together
+from lightgesture.sources import open_source
 
 
 def a_map():
@@ -50,3 +56,14 @@ def test_log_odds_add():
     logits = np.array([EVEN, EVEN + 2 / WEIGHT, EVEN, 40.0, -40.0], np.float32)
     assert together(scores, logits) == pytest.approx([0.5, 1 / (1 + np.exp(-2)), 0.3, 1.0, 0.0], abs=1e-3)
     assert np.isfinite(together(scores, np.full(5, 80.0, np.float32))).all()
+
+
+def test_the_learned_selector_asks_its_verifier(monkeypatch):
+    with open_source(SAMPLE) as source:
+        seen = ColourStage().process(next(frame.image for frame in source if frame.index == 60))
+    known = load_learned()
+    plain = LearnedSelector(replace(known, verifier=None)).process(seen)
+    monkeypatch.setattr(verifying, "DOUBTED", (0.0, 1.0))
+    asked = LearnedSelector(known).process(seen)
+    assert [one.box for one in plain.regions[:2]] == [one.box for one in asked.regions[:2]]
+    assert plain.regions[0].confidence != asked.regions[0].confidence

@@ -9,7 +9,9 @@ import pytest
 from lightgesture.cli import main
 from lightgesture.features.find.selector_file import load_classical, load_learned
 from lightgesture.training.model_files import write_networks, write_selector
+from lightgesture.training.nets.checkpoints import sha256_of
 from lightgesture.training.regions import learned, train
+from lightgesture.training.regions.card import MODEL
 from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.nets import LOCATOR, NETS, REFINER, RegionTraining, learn_nets
 from lightgesture.training.regions.region_pictures import Material
@@ -38,7 +40,7 @@ def test_the_learned_choice_can_be_trained_alone(tmp_path, monkeypatch):
     assert load_classical(tmp_path / "new.npz").pairs.base == 0.25
     card = json.loads((tmp_path / "new.json").read_text())
     assert card["classical_trees"] == "of that selector"
-    assert card["nets_went_on_from_the_selector_of_sha256"] == settings.origin
+    assert card["nets_went_on_from_the_selector_of_sha256"] == settings.start_digest()
     assert isinstance(card["seconds"], int)
 
 
@@ -58,8 +60,25 @@ def test_the_verifier_can_be_trained_alone(tmp_path, monkeypatch):
     assert made.places.base == known.places.base
     card = json.loads((tmp_path / "new.json").read_text())
     assert card["seed"] == 7
+    assert card["model"] == MODEL
     assert card["verifier"]["steps"] == RegionTraining().verifier_steps
+    assert card["verifier"]["beside_the_selector_of_sha256"] == sha256_of(tmp_path / "start.npz")
     assert isinstance(card["verifier"]["seconds"], int)
+
+
+@pytest.mark.parametrize("alone", [[], ["--verifier", "--start", "bundled"]])
+def test_a_reader_that_nothing_can_learn_on_from_is_refused_before_anything_is_done(
+    alone, tmp_path, monkeypatch, capsys
+):
+    pytest.importorskip("torch")
+    monkeypatch.setattr(train, "read_pictures", lambda *_: pytest.fail("pictures were read"))
+    command = ["train", "regions", "--data", str(tmp_path), "--out", str(tmp_path / "a.npz"), *alone]
+    for reader, reason in (("svm", "has no larger net"), (str(tmp_path / "nosuch.npz"), "No such file")):
+        assert main([*command, "--reader", reader]) == 2
+        line = capsys.readouterr().err.strip()
+        assert line.count("\n") == 0
+        assert reader in line
+        assert reason in line
 
 
 @pytest.mark.parametrize("option", ["--learned", "--classical", "--verifier"])

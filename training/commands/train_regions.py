@@ -46,23 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NPZ",
         help="model of train look whose larger net the verifier learns on from (default: the bundled one)",
     )
-    alone = parser.add_mutually_exclusive_group()
-    alone.add_argument(
-        "--learned",
-        action="store_true",
-        help="train the learned choice alone; the classical one stays that of --start, which must be given",
-    )
-    alone.add_argument(
-        "--classical",
-        action="store_true",
-        help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
-    )
-    alone.add_argument(
-        "--verifier",
-        action="store_true",
-        help="train the net that looks again at what is in doubt, and the trees of pairs with it; the rest stays that "
-        "of --start, which must be given",
-    )
+    _add_parts_alone(parser)
     parser.add_argument(
         "--precision",
         choices=PRECISIONS,
@@ -80,9 +64,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
 
 
+def _add_parts_alone(parser: argparse.ArgumentParser) -> None:
+    alone = parser.add_mutually_exclusive_group()
+    alone.add_argument(
+        "--learned",
+        action="store_true",
+        help="train the learned choice alone; the classical one stays that of --start, which must be given",
+    )
+    alone.add_argument(
+        "--classical",
+        action="store_true",
+        help="fit the trees of the classical choice alone; the rest stays that of --start, which must be given",
+    )
+    alone.add_argument(
+        "--verifier",
+        action="store_true",
+        help="train the net that looks again at what is in doubt, and the trees of pairs with it; the rest stays that "
+        "of --start, which must be given",
+    )
+
+
 def run(args: argparse.Namespace) -> int:
     """Train and write the selector and its card."""
     from lightgesture.features.find.selector_file import SelectorError
+    from lightgesture.models import ModelError
     from lightgesture.training.pool.left_out import left_out
     from lightgesture.training.regions.nets import RegionTraining
     from lightgesture.training.regions.train import train_classical, train_regions, train_verifier
@@ -119,6 +124,8 @@ def run(args: argparse.Namespace) -> int:
                 )
     except SelectorError as error:
         raise UsageError(f"--start: {error}") from error
+    except ModelError as error:
+        raise UsageError(f"--reader: {error}") from error
     except KeyboardInterrupt:
         raise KeyboardInterrupt(kept_text(out)) from None
     return ExitStatus.OK

@@ -1,5 +1,7 @@
-"""What every training of a net needs: torch, a folder for what is done already, and its peak of memory."""
+"""What every training of a net needs: torch, a folder for what is done already, the digest of a file that it goes on
+from, and its peak of memory."""
 
+import hashlib
 import json
 import re
 from collections.abc import Mapping
@@ -58,6 +60,11 @@ def _remedy(folder: Path) -> str:
         "give the same options to go on with it, or another --out. To use its patches with other steps: "
         f"mkdir {other}, cp {folder}/patches.* {folder}/[cl]*.npy {other}, and --out {other.with_suffix('.npz')}"
     )
+
+
+def sha256_of(file: Path) -> str:
+    """Of a file's content, in hexadecimal."""
+    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def peak_memory_mib() -> int | None:

@@ -18,14 +18,8 @@ from lightgesture.models.cnn import CONTOUR, PATCH, SCORES
 from lightgesture.training.nets.hand_samples import HandBatch, HandSamples, standardised
 from lightgesture.training.nets.landmark_task import LANDMARKS, landmark_loss, with_head, without_head
 from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, train_net
-from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.quantise import CALIBRATION, STANDARD_RANGE, quantise
 from lightgesture.training.nets.torch_network import TorchNetwork
-
-STANDARD_RANGE = (-3.0, 3.0)
-"""Of the standardised values of patches and outlines."""
-CALIBRATION = 12
-"""Batches from which the range of each tensor is measured."""
-
 
 BATCH = 128
 """Patches of a step."""

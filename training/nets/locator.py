@@ -12,14 +12,12 @@ from lightgesture.features.find.locator import EDGES, HEAT, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import LOCATOR_INPUT, LOCATOR_OUTPUTS, locator_nodes
 from lightgesture.training.nets.locator_samples import LocatorSamples
-from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, train_net
-from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou
+from lightgesture.training.nets.region_nets import train_region_net, typical_inputs
 from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
 
 BATCH = 32
-CALIBRATION = 12
-"""Batches from which the range of each tensor is measured."""
 RATE = 2.5e-3
 
 
@@ -49,12 +47,10 @@ def train_locator(
         return {INPUT: seen}, (*(torch.from_numpy(np.stack(m)) for m in maps), weights)
 
     if start is not None:
-        start_from(net, start, batch(np.random.default_rng((seed, steps)))[0])
+        start_from(net, start, typical_inputs(batch, seed, steps))
     rate = RATE if start is None else STARTED * RATE
     loop = LoopSettings(steps, rate, precision=precision)
-    trained = train_net(net, batch, locator_loss, loop, seed, checkpoint, progress)
-    typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
-    return quantise(trained, typical, {INPUT: (-3.0, 3.0)})
+    return train_region_net(net, batch, locator_loss, loop, seed, checkpoint, progress)
 
 
 def locator_loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:

@@ -4,7 +4,6 @@ So a model that reads dry hands well learns to read those of a dive where it was
 changes.
 """
 
-import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import asdict, replace
@@ -17,7 +16,7 @@ from lightgesture.models.cnn import CnnClassifier
 from lightgesture.models.cnn_file import MOST_LARGER
 from lightgesture.training.card import make_card
 from lightgesture.training.model_files import write_cnn_model, write_json
-from lightgesture.training.nets.checkpoints import need_torch, peak_memory_mib
+from lightgesture.training.nets.checkpoints import need_torch, peak_memory_mib, sha256_of
 from lightgesture.training.nets.cnn import CnnTraining, draw, net_settings
 from lightgesture.training.nets.hand_samples import HandSamples
 from lightgesture.training.pool.kept_sources import held_out_hands
@@ -112,8 +111,3 @@ def carried_on(first: Path, *, beside: bool) -> dict[str, Any]:
     except (ValueError, KeyError, TypeError) as error:
         reason = f"no card of a classifier ({error})"
     raise InputError(f"{first.with_suffix('.json')}: {reason}; a model needs its card to go on from")
-
-
-def sha256_of(path: Path) -> str:
-    """Of a file's content."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()

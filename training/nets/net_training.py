@@ -11,7 +11,6 @@ from typing import Literal, get_args
 import numpy as np
 import torch
 from torch import Tensor
-from torch.nn import functional
 
 from lightgesture.results.atomic import replacing
 from lightgesture.training.nets.optimisers import NetOptimiser
@@ -146,10 +145,3 @@ def giou(one: Tensor, other: Tensor) -> Tensor:
     low, high = torch.minimum(one[:, :2], other[:, :2]), torch.maximum(one[:, 2:], other[:, 2:])
     hull = (high - low).prod(dim=1)
     return inner / union - (hull - union) / hull
-
-
-def hand_loss(logits: Tensor, targets: Tensor) -> Tensor:
-    """Cross-entropy of hand or not. logits: (n,). targets: (n, 6) of `window_samples`."""
-    weight, hand = targets[:, 5], targets[:, 0]
-    each = functional.binary_cross_entropy_with_logits(logits, hand * 0.98 + 0.01, reduction="none")
-    return (each * weight).sum() / weight.sum().clamp(min=1)

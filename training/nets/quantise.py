@@ -14,6 +14,10 @@ from lightgesture.training.nets.torch_network import TorchNetwork
 
 Range = tuple[float, float]
 
+STANDARD_RANGE = (-3.0, 3.0)
+"""Of the standardised values of pictures, patches and outlines."""
+CALIBRATION = 12
+"""Batches from which the range of each tensor is measured."""
 LEAST_SCALE = 1e-8
 """Of the weights of a channel that training has emptied."""
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-import numpy as np
 import torch
 from torch import Tensor
 from torch.nn import functional
@@ -11,15 +10,19 @@ from torch.nn import functional
 from lightgesture.features.find.refiner import BOX, HAND, INPUT
 from lightgesture.features.net.network import IntegerNetwork
 from lightgesture.training.nets.architectures import REFINER_INPUT, REFINER_OUTPUTS, refiner_nodes
-from lightgesture.training.nets.net_training import Batch, LoopSettings, Precision, giou, hand_loss, train_net
-from lightgesture.training.nets.quantise import quantise
+from lightgesture.training.nets.net_training import LoopSettings, Precision, giou
+from lightgesture.training.nets.region_nets import (
+    hand_loss,
+    train_region_net,
+    typical_inputs,
+    window_batches,
+)
 from lightgesture.training.nets.started import STARTED, start_from
 from lightgesture.training.nets.torch_network import TorchNetwork
 from lightgesture.training.nets.window_samples import WindowSamples
 
 PICTURES = 32
 """Of one batch."""
-CALIBRATION = 12
 RATE = 2e-3
 LEAST_SIDE = 0.02
 """Of a box in window sides, so that the overlap always has a slope."""
@@ -38,18 +41,12 @@ def train_refiner(
     torch.manual_seed(seed)
     net = TorchNetwork({INPUT: REFINER_INPUT}, refiner_nodes(), REFINER_OUTPUTS)
 
-    def batch(rng: np.random.Generator) -> Batch:
-        windows, targets = zip(*(samples.draw(rng) for _ in range(PICTURES)), strict=True)
-        seen = torch.from_numpy(np.concatenate(windows)).permute(0, 3, 1, 2)
-        return {INPUT: seen}, (torch.from_numpy(np.concatenate(targets)),)
-
+    batch = window_batches(samples, INPUT, PICTURES)
     if start is not None:
-        start_from(net, start, batch(np.random.default_rng((seed, steps)))[0])
+        start_from(net, start, typical_inputs(batch, seed, steps))
     rate = RATE if start is None else STARTED * RATE
     loop = LoopSettings(steps, rate, warm_up=200, mean=0.998, precision=precision)
-    trained = train_net(net, batch, refiner_loss, loop, seed, checkpoint, progress)
-    typical = (batch(np.random.default_rng((seed, steps + 1, i)))[0] for i in range(CALIBRATION))
-    return quantise(trained, typical, {INPUT: (-3.0, 3.0)})
+    return train_region_net(net, batch, refiner_loss, loop, seed, checkpoint, progress)
 
 
 def refiner_loss(outputs: Mapping[str, Tensor], truth: tuple[Tensor, ...]) -> Tensor:

@@ -3,17 +3,21 @@
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import cv2
 import numpy as np
 
 from lightgesture.results.atomic import replacing
-from lightgesture.training.nets.checkpoints import peak_memory_mib
+from lightgesture.training.nets.checkpoints import peak_memory_mib, sha256_of
 from lightgesture.training.pool.left_out import CARD_KEY, LeftOut
 from lightgesture.training.regions.learned import Pictures
 from lightgesture.training.regions.nets import RegionTraining
 from lightgesture.training.regions.region_pictures import NEGATIVE_SETS, ONE_IN
+
+MODEL: Final = (
+    "selector of hand regions: locator, refiner and verifier with trees; the classical choice beside them"
+)
 
 
 def write_card(
@@ -36,7 +40,7 @@ def write_card(
 
     both = pictures.for_nets, pictures.for_trees
     card = {
-        "model": "selector of hand regions: locator, refiner and verifier with trees; the classical choice beside them",
+        "model": MODEL,
         "data": {
             "whole frames (webcam/train, single pictures of frames/subhi)": sum(
                 len(part.frames) for part in both
@@ -53,8 +57,8 @@ def write_card(
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
-        "nets_went_on_from_the_selector_of_sha256": settings.origin,
-        "verifier_went_on_from_the_larger_net_of_sha256": settings.reader_origin,
+        "nets_went_on_from_the_selector_of_sha256": settings.start_digest(),
+        "verifier_went_on_from_the_larger_net_of_sha256": settings.reader_digest(),
         "classical_trees": "of that selector" if keeps_classical else "fitted with it",
         "steps": {
             "locator": settings.locator_steps,
@@ -74,10 +78,12 @@ def write_card(
 
 
 def extend_card(start: Path, out: Path, part: str, told: Mapping[str, Any]) -> None:
-    """Write the card of the file `start`, where it has one, beside `out`, with a word of a part that was made anew."""
+    """Write the card of the file `start`, where it has one, beside `out`, with a word of a part that was made anew, and
+    of the file beside whose other parts it stands."""
     card = start.with_suffix(".json")
     content = json.loads(card.read_text(encoding="utf-8")) if card.is_file() else {}
-    _write(out, {**content, part: dict(told)})
+    beside = {"beside_the_selector_of_sha256": sha256_of(start)}
+    _write(out, {**content, "model": MODEL, part: {**told, **beside}})
 
 
 def told_of(without: LeftOut, seed: int) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from lightgesture.errors import InputError
-from lightgesture.features.find.learned import Places, Scorer
+from lightgesture.features.find.learned import Places, PlaceScorer
 from lightgesture.features.find.selector_file import LearnedParts
 from lightgesture.features.find.trees import Trees
 from lightgesture.features.net.network import IntegerNetwork
@@ -101,7 +101,7 @@ def verified_choice(
     verifier = learn_verifier(pictures.for_nets, pictures.composed, locator, folder, seed, settings, progress)
     progress("fitting the trees of pairs")
     _, second = tree_pictures(pictures.for_trees, pictures.unseen, seed)
-    pairs = fit_place_pairs(look(second, Places(locator, refiner)), Scorer(places, verifier), seed)
+    pairs = fit_place_pairs(look(second, Places(locator, refiner)), PlaceScorer(places, verifier), seed)
     return LearnedParts(locator, refiner, places, pairs, verifier)
 
 

@@ -1,6 +1,5 @@
 """The nets of the learned choice: the locator, then refiner and verifier, which learn from what it mistakes."""
 
-import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -8,13 +7,14 @@ from typing import TYPE_CHECKING, Final, Self
 
 from lightgesture.errors import UsageError
 from lightgesture.features.archive import read_archive
-from lightgesture.features.find.selector_file import LOCATOR, REFINER, VERIFIER, SelectorError, load_nets
+from lightgesture.features.find.selector_file import LOCATOR, REFINER, VERIFIER, load_nets
 from lightgesture.features.net.file import network_from
 from lightgesture.features.net.network import IntegerNetwork
-from lightgesture.models import ModelError, load_classifier
+from lightgesture.models import load_classifier
 from lightgesture.models.cnn import CnnClassifier
 from lightgesture.models.loading import SHIPPED
 from lightgesture.training.model_files import write_networks
+from lightgesture.training.nets.checkpoints import sha256_of
 from lightgesture.training.pictures.boxed import BoxedPicture
 from lightgesture.training.pictures.real_divers import RealDivers
 from lightgesture.training.regions.region_pictures import Material
@@ -55,22 +55,17 @@ class RegionTraining:
             self, locator_steps=steps, refiner_steps=max(1, steps * 4 // 5), verifier_steps=max(1, steps // 2)
         )
 
-    @property
-    def origin(self) -> str | None:
-        """SHA-256 of that file. Raises SelectorError."""
-        return None if self.start is None else _sha256_of(self.start, SelectorError)
+    def start_digest(self) -> str | None:
+        """SHA-256 of the file of `start`, which is read here, before hours of work. Raises SelectorError."""
+        if self.start is None:
+            return None
+        load_nets(self.start)
+        return sha256_of(self.start)
 
-    @property
-    def reader_origin(self) -> str:
-        """SHA-256 of the reader's file. Raises ModelError."""
-        return _sha256_of(SHIPPED.get(self.reader, Path(self.reader)), ModelError)
-
-
-def _sha256_of(file: Path, error: Callable[[str], ValueError]) -> str:
-    try:
-        return hashlib.sha256(file.read_bytes()).hexdigest()
-    except OSError as reason:
-        raise error(f"{file}: cannot be read ({reason.strerror})") from reason
+    def reader_digest(self) -> str:
+        """SHA-256 of the reader's file, which is read here, too. Raises ModelError, UsageError."""
+        larger_net(self.reader)
+        return sha256_of(SHIPPED.get(self.reader, Path(self.reader)))
 
 
 def learn_nets(
@@ -122,7 +117,6 @@ def learn_verifier(
     from lightgesture.training.nets.verifier import train_verifier
     from lightgesture.training.nets.window_samples import VERIFIER as VERIFIER_SAMPLES
 
-    # Before the windows are drawn, which takes a minute.
     reader = larger_net(settings.reader)
     windows = window_samples(material, composed, locator, VERIFIER_SAMPLES, progress)
     steps, precision = settings.verifier_steps, settings.precision

@@ -56,8 +56,8 @@ def train_regions(
     told = {
         CARD_KEY: without.to_card(),
         "settings": repr(settings),
-        "start": settings.origin,
-        "reader": settings.reader_origin,
+        "start": settings.start_digest(),
+        "reader": settings.reader_digest(),
     }
     folder = checkpoint_folder(out, {"seed": seed, **told})
     with SpentTime(folder) as spent:
@@ -119,9 +119,13 @@ def train_verifier(
     known, classical = load_learned(start), load_classical(start)
     told = {
         "steps": settings.verifier_steps,
-        "went_on_from_the_larger_net_of_sha256": settings.reader_origin,
+        "went_on_from_the_larger_net_of_sha256": settings.reader_digest(),
     }
-    kept = {CARD_KEY: without.to_card(), "start": settings.origin}
+    kept = {
+        CARD_KEY: without.to_card(),
+        "start": settings.start_digest(),
+        "precision": settings.precision,
+    }
     folder = checkpoint_folder(out, {"seed": seed, **told, **kept})
     with SpentTime(folder) as spent:
         progress = spent.kept_by(progress)

@@ -28,8 +28,7 @@ from lightgesture.features.find.classical import (
     standing_out,
     with_bank,
 )
-from lightgesture.features.find.learned import Places, scored_places
-from lightgesture.features.find.learned import Scorer as PlaceScorer
+from lightgesture.features.find.learned import Places, PlaceScorer, scored_places
 from lightgesture.features.find.locator import Peaks
 from lightgesture.features.find.proposals import Proposals, whole_regions, without_forearms
 from lightgesture.features.find.refiner import Refined

@@ -58,7 +58,7 @@ def places(study: Study, training: CnnTraining, folder: Path, args: argparse.Nam
     for group in args.group or signing:
         names = group.split(",")
         own = [frame for frame in frames if frame.place in names]
-        model = _second_look(study, first.model, names, own, training, folder)
+        model = second_look_without(study, first.model, own, training, folder)
         write_cnn_model(model, folder / f"{'_'.join(names)}.npz")
         scored = score_divers([DiverMethod(group, FindsNothing(), CnnClassifier(model))], own)
         hands += [replace(row, method=JOINED) for row in scored.hands]
@@ -66,14 +66,13 @@ def places(study: Study, training: CnnTraining, folder: Path, args: argparse.Nam
     return diver_tables(hands, rows)
 
 
-def _second_look(
-    study: Study,
-    first: CnnModel,
-    names: Sequence[str],
-    frames: Sequence[DiverFrame],
-    training: CnnTraining,
-    folder: Path,
+def second_look_without(
+    study: Study, first: CnnModel, frames: Sequence[DiverFrame], training: CnnTraining, folder: Path
 ) -> CnnModel:
+    """The small net of `first` with a larger one that has learnt nothing of the dives of these frames.
+
+    What is done lies in `folder`. InputError: the pool has none of these dives.
+    """
     from lightgesture.training.nets.checkpoints import checkpoint_folder
     from lightgesture.training.nets.second_look import first_teacher, with_second_look
 
@@ -87,7 +86,7 @@ def _second_look(
     parts = checkpoint_folder(folder / digest, request)
     samples = HandSamples(study.pool, rows, study.classes, MARGIN)
     settings = net_settings(training)
-    larger = first_teacher(samples, settings, training.seed, parts, lambda text: say(f"{names}: {text}"))
+    larger = first_teacher(samples, settings, training.seed, parts, say)
     hands = held_out_hands(first, Originals(study.hands), study.pool, kept)
     return with_second_look(first, larger, hands)
 
@@ -95,5 +94,5 @@ def _second_look(
 def _of_dives(study: Study, frames: Sequence[DiverFrame]) -> Mask:
     seen = np.isin(study.pool.sources, [f"{SOURCE} {frame.dive}" for frame in frames])
     if not seen.any():
-        raise InputError(f"{study.folder}: its pool has no divers of these places; draw it with them")
+        raise InputError(f"{study.folder}: its pool has none of these dives; draw it with them")
     return np.asarray(seen)

@@ -96,6 +96,35 @@ def test_a_folder_of_another_training_is_refused(monkeypatch, tmp_path, data, pi
     assert "holds parts of another training" in capsys.readouterr().err
 
 
+def test_each_fold_is_read_by_a_net_that_has_not_seen_its_dives(monkeypatch, tmp_path, data, pictures):
+    pytest.importorskip("torch")
+    without = []
+
+    def second_look(study, first, frames, training, folder):
+        del study, folder
+        assert training.steps == 7
+        without.append({frame.dive for frame in frames})
+        return first
+
+    monkeypatch.setattr(dives, "learn_choice", lambda *_: load_learned())
+    monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
+    monkeypatch.setattr(dives, "open_study", lambda *_: None)
+    monkeypatch.setattr(dives, "second_look_without", second_look)
+    parts = tmp_path / "parts"
+    arguments = ["--data", str(data), "--parts", str(parts), "--steps", "10", "--reader", "cnn"]
+    arguments += ["--pool", str(tmp_path / "pool"), "--look-steps", "7"]
+    assert dives.main(arguments) == 0
+    assert without == [{dive for dive in DIVES if dives.fold_of_dive(dive) == fold} for fold in range(5)]
+
+
+def test_a_pool_needs_a_net_to_stand_beside(monkeypatch, tmp_path, data, pictures, capsys):
+    pytest.importorskip("torch")
+    monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
+    arguments = ["--data", str(data), "--parts", str(tmp_path), "--reader", "cnn", "--model", "svm"]
+    assert dives.main([*arguments, "--pool", str(tmp_path)]) == 2
+    assert "svm: is no net; --pool trains a larger net" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("fold", ["5", "-1", "one"])
 def test_a_fold_that_there_is_not_is_refused(fold, tmp_path, capsys):
     with pytest.raises(SystemExit):

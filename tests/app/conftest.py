@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from lightgesture.cli import main
-from lightgesture.fsm import Decoder, Instruction, Notice, Rejected, State, Word, load_grammar
+from lightgesture.fsm import Decoder, Notice, Rejected, State, Word, load_grammar
 from lightgesture.models import ModelError
 from lightgesture.records import FrameRecord, Hand, SummaryRecord
+from tests.makers import hover
 
 SIZE = (64, 48)
 """Width and height of the drawn videos, pixels."""
@@ -85,17 +86,11 @@ class FakePipeline:
             ]
         if index == 2:
             records += [
-                Instruction(
+                hover(
                     start_frame=0,
                     start_time_s=0.0,
                     text="STOP HOVER GO",
-                    kind="task",
-                    action="HOVER",
                     duration_s=None,
-                    program=None,
-                    parameter=None,
-                    change=None,
-                    confidence=0.95,
                     words=("STOP", "HOVER", "GO"),
                     **at,
                 ),

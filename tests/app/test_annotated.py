@@ -9,13 +9,14 @@ import pytest
 from matplotlib.figure import Figure
 
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm import Notice, Rejected, State, Word
 from lightgesture.fsm.events import Certainty
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.results.annotated import open_annotated_video
 from lightgesture.results.readings_panel import draw_readings
 from lightgesture.results.timeline import NOT_READ, TOKENS, Timeline, open_plot
 from lightgesture.sources import read_picture
+from tests.makers import hover
 
 
 def frames_of(path):
@@ -136,21 +137,7 @@ def test_timeline_of_everything(tmp_path):
         timeline.write(Word(time_s=0.3, pair=("ok", "0"), word="$STOP", state="", confidence=1.0, **at))
         timeline.write(Rejected(time_s=0.6, reason="limit", text="STOP $ 5", detail="", **at))
         timeline.write(
-            Instruction(
-                time_s=0.9,
-                start_frame=0,
-                start_time_s=0.1,
-                text="STOP HOVER GO",
-                kind="task",
-                action="HOVER",
-                duration_s=None,
-                program=None,
-                parameter=None,
-                change=None,
-                confidence=0.9,
-                words=(),
-                **at,
-            )
+            hover(time_s=0.9, start_time_s=0.1, text="STOP HOVER GO", duration_s=None, confidence=0.9, **at)
         )
     assert timeline.end_s == 0.9
     assert timeline.hands["left"][1] == [TOKENS.index("ok")] * 10

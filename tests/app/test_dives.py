@@ -6,8 +6,9 @@ import pytest
 
 from lightgesture.archive.dives import COLUMNS, write_dives
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.fsm import Instruction, Rejected
+from lightgesture.fsm import Rejected
 from lightgesture.results import open_writer, output_stems
+from tests.makers import hover
 
 
 def rows(path):
@@ -16,23 +17,7 @@ def rows(path):
 
 
 def instruction(source, start_s, end_s, utc=None):
-    return Instruction(
-        source=source,
-        frame=9,
-        time_s=end_s,
-        utc=utc,
-        start_frame=0,
-        start_time_s=start_s,
-        text="STOP HOVER 50 GO",
-        kind="task",
-        action="HOVER",
-        duration_s=50,
-        program=None,
-        parameter=None,
-        change=None,
-        confidence=0.95,
-        words=("STOP",),
-    )
+    return hover(source=source, time_s=end_s, utc=utc, start_frame=0, start_time_s=start_s)
 
 
 @pytest.mark.usefixtures("fake")

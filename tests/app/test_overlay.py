@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from lightgesture.fsm import Instruction, Notice, Rejected, State
+from lightgesture.fsm import Notice, Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import FrameRecord, Hand
 from lightgesture.results.overlay import Overlay, OverlayState, advance, render
 from lightgesture.results.words import rejected as rejected_words
 from lightgesture.results.words import unread
+from tests.makers import hover
 
 HAND = Hand(side="left", token="ok", confidence=0.93, box=(40, 60, 50, 40), track=1, reason=None)
 REFUSED = Hand(side="right", token=None, confidence=0.3, box=(-9, -5, 80, 70), track=2, reason="partial")
@@ -23,22 +24,7 @@ def state(time_s, sentence="STOP HOVER", dwell=None):
 
 
 def instruction(time_s, text="STOP HOVER 50 GO"):
-    return Instruction(
-        source="a",
-        frame=0,
-        time_s=time_s,
-        start_frame=0,
-        start_time_s=0.0,
-        text=text,
-        kind="task",
-        action="HOVER",
-        duration_s=50,
-        program=None,
-        parameter=None,
-        change=None,
-        confidence=0.95,
-        words=(),
-    )
+    return hover(time_s=time_s, text=text)
 
 
 def rejected(time_s, detail="program 5 is not in [programs]"):

@@ -9,11 +9,12 @@ import pytest
 import webvtt
 
 from lightgesture.errors import UsageError
-from lightgesture.fsm import Instruction, Notice, Rejected, State, Word
+from lightgesture.fsm import Notice, Rejected, State, Word
 from lightgesture.records import SummaryRecord
 from lightgesture.results import WRITERS, describe, open_writer, output_stems, to_json_line
 from lightgesture.results.atomic import replacing, replacing_folder
 from lightgesture.results.spreadsheet import COLUMNS
+from tests.makers import hover
 
 
 def notice(source, detail="3,left is no word"):
@@ -25,22 +26,7 @@ def rejected(time_s, text="STOP EXEC 5 GO", detail="no program 5", source="a.mp4
 
 
 def instruction(time_s, text="STOP HOVER 50 GO", source="a.mp4"):
-    return Instruction(
-        source=source,
-        frame=131,
-        time_s=time_s,
-        start_frame=4,
-        start_time_s=0.13,
-        text=text,
-        kind="task",
-        action="HOVER",
-        duration_s=50,
-        program=None,
-        parameter=None,
-        change=None,
-        confidence=0.95,
-        words=("STOP", "HOVER", "5", "AND", "0", "GO"),
-    )
+    return hover(source=source, time_s=time_s, text=text)
 
 
 def write(path, records, name="a.mp4"):

@@ -2,10 +2,11 @@
 
 import json
 
-from lightgesture.fsm import Instruction, Rejected, State
+from lightgesture.fsm import Rejected, State
 from lightgesture.fsm.events import Growth
 from lightgesture.records import SummaryRecord, VehicleRecord
 from lightgesture.web import WebListener
+from tests.makers import hover
 from tests.web.browser import AT, FRAME, connect, get, picture, read_until
 
 STATE = State(
@@ -14,19 +15,8 @@ STATE = State(
 
 
 def instruction(text="STOP HOVER GO"):
-    return Instruction(
-        start_frame=0,
-        start_time_s=0.0,
-        text=text,
-        kind="task",
-        action="HOVER",
-        duration_s=None,
-        program=None,
-        parameter=None,
-        change=None,
-        confidence=0.95,
-        words=("STOP", "HOVER", "GO"),
-        **AT,
+    return hover(
+        text=text, duration_s=None, words=("STOP", "HOVER", "GO"), start_time_s=0.0, start_frame=0, **AT
     )
 
 

@@ -12,11 +12,12 @@ import pytest
 from lightgesture.cli import main
 from lightgesture.config.settings import DecodeSettings
 from lightgesture.errors import ExitStatus, UsageError
-from lightgesture.fsm import Instruction, Notice, State
+from lightgesture.fsm import Notice, State
 from lightgesture.records import FrameRecord, HeartbeatRecord
 from lightgesture.ros.listener import OK, STALE, WARN, RosListener
 from lightgesture.ros.running import parameter_names, refuse_useless, run_topic, settings_with
 from lightgesture.ros.source import HEADERS_KEPT, TopicSource
+from tests.makers import hover
 
 GREY = np.full((48, 64, 3), 90, np.uint8)
 JPEG = cv2.imencode(".jpg", GREY)[1].tobytes()
@@ -77,15 +78,6 @@ def beat(frames, dropped=0):
     )
 
 
-def instruction(**changes):
-    fields = {
-        "source": "s", "frame": 0, "time_s": 1.0, "start_frame": 0, "start_time_s": 0.0, "text": "STOP HOVER 50 GO",
-        "kind": "task", "action": "HOVER", "duration_s": 50, "program": None, "parameter": None, "change": None,
-        "confidence": 0.9, "words": ("STOP", "HOVER", "5", "AND", "0", "GO"),
-    }  # fmt: skip
-    return Instruction(**{**fields, **changes})
-
-
 def test_only_the_newest_message_is_taken(source):
     for number in range(3):
         source.put(compressed(number))
@@ -130,7 +122,7 @@ def test_an_instruction_is_published_whole_and_in_parts(source, changes, number)
     wire = Wire()
     source.put(compressed(7))
     next(iter(source))
-    RosListener(wire, source).show(None, [instruction(**changes)])
+    RosListener(wire, source).show(None, [hover(frame=0, **changes)])
     parts = dict(wire.published)
     record = json.loads(parts.pop("instruction"))
     assert (record["text"], record["stamp"], record["frame_id"]) == ("STOP HOVER 50 GO", [7, 5], "camera")

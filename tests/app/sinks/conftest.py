@@ -5,9 +5,9 @@ import socket
 import pytest
 from pymavlink.dialects.v20 import common
 
-from lightgesture.fsm import Instruction
 from lightgesture.records import HeartbeatRecord
 from lightgesture.sinks.mavlink_map import load_map
+from tests.makers import hover
 
 
 @pytest.fixture
@@ -15,23 +15,7 @@ def instruction():
     """Makes an instruction; the keywords change its fields."""
 
     def make(**changes):
-        fields = {
-            "source": "cam",
-            "frame": 131,
-            "time_s": 4.37,
-            "start_frame": 4,
-            "start_time_s": 0.13,
-            "text": "STOP HOVER 50 GO",
-            "kind": "task",
-            "action": "HOVER",
-            "duration_s": 50,
-            "program": None,
-            "parameter": None,
-            "change": None,
-            "confidence": 0.95,
-            "words": ("STOP", "HOVER", "5", "AND", "0", "GO"),
-        }
-        return Instruction(**{**fields, **changes})
+        return hover(**{"source": "cam", **changes})
 
     return make
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from pymavlink.dialects.v20 import common
 
-from lightgesture.fsm import Instruction
 from lightgesture.records import FrameRecord, Hand, HeartbeatRecord
 from lightgesture.sinks.mavlink_link import Link
 from lightgesture.vehicle import Reply, SetMode, StartMission, Status
 from lightgesture.vehicle.executor import Executor
 from lightgesture.vehicle.mavlink_vehicle import MavlinkVehicle
 from lightgesture.vehicle.profile_file import load_vehicle
+from tests.makers import hover
 
 PICTURE = np.zeros((48, 64, 3), np.uint8)
 TICK_S = 0.05
@@ -30,10 +30,6 @@ def instruction():
         number = next((int(word) for word in rest if word.isdecimal()), None)
         fields = {
             "source": "cam",
-            "frame": 131,
-            "time_s": 4.37,
-            "start_frame": 4,
-            "start_time_s": 0.13,
             "text": text,
             "kind": kinds.get(action, "task"),
             "action": action,
@@ -41,10 +37,9 @@ def instruction():
             "program": number if action == "EXEC" else None,
             "parameter": number if action == "PARAM" else None,
             "change": next((word for word in rest if word in ("INCREASE", "DECREASE", "DEFAULT")), None),
-            "confidence": 0.95,
             "words": (start, action, "GO"),
         }
-        return Instruction(**{**fields, **changes})
+        return hover(**{**fields, **changes})
 
     return make
 

@@ -79,10 +79,8 @@ class LearnedSelector:
     settings: SelectorSettings = LEARNED
 
     def __init__(self, parts: LearnedParts) -> None:
-        self._nets, self._scorer = (
-            Places(parts.locator, parts.refiner),
-            PlaceScorer(parts.places, parts.verifier),
-        )
+        self._nets = Places(parts.locator, parts.refiner)
+        self._scorer = PlaceScorer(parts.places, parts.verifier)
         self._pairs = parts.pairs
 
     def process(self, colour: ColourMap) -> Candidates:

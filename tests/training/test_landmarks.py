@@ -176,14 +176,8 @@ def samples_of(pool):
     return HandSamples(pool, np.ones(len(pool.tokens), bool), ("1", "5"), MARGIN)
 
 
-def as_they_are(patches, random):
-    """In the place of `recolour`: a dot stays the brightest pixel."""
-    del patches, random
-
-
 def test_landmarks_move_with_the_drawn_part_of_a_patch(monkeypatch):
     monkeypatch.setattr(hand_samples, "ERASED_SHARE", 0.0)
-    monkeypatch.setattr(hand_samples, "recolour", as_they_are)
     batch = samples_of(dotted_pool(20)).draw(np.random.default_rng(0), 60)
     assert batch.landmarks.shape == (60, COORDINATES)
     for patch, told in zip(batch.patches, batch.landmarks.reshape(60, 21, 2), strict=True):
@@ -261,8 +255,6 @@ def test_a_net_learns_classes_and_landmarks(tmp_path, monkeypatch, answers):
     from lightgesture.training.nets.hand_net import NetSettings, make_net, tells_landmarks, train_hand_net
 
     monkeypatch.setattr(hand_net, "BATCH", 32)
-    # Sixty steps are too few to learn a dot in every colour.
-    monkeypatch.setattr(hand_samples, "recolour", as_they_are)
     pool = dotted_pool(200, unknown=40)
     samples, settings = samples_of(pool), NetSettings(60, landmarks=1.0)
     if answers:

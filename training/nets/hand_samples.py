@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from lightgesture.features.standardise import EVENNESS, LARGEST
 from lightgesture.features.types import Float
 from lightgesture.models import NONE
-from lightgesture.training.nets.patch_colours import recolour
 from lightgesture.training.pool.divers import SOURCE
 from lightgesture.training.pool.patch_pool import PatchPool
 from lightgesture.training.svm.machine import sample_weights
@@ -117,7 +116,6 @@ class HandSamples:
         rows = self._rows[drawn]
         corners = random.integers(2 * self._margin + 1, size=(count, 2))
         seen = standardised(self._shifted(rows, corners))
-        recolour(seen, random)
         landmarks = self._landmarks(rows, corners)
         self._erase(seen, landmarks, random)
         answers = None if self._answers is None else self._answers[drawn].astype(np.float32)

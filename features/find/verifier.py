@@ -56,4 +56,5 @@ class Verifier:
 def together(scores: Float, logits: Float) -> Float:
     """float32 (n,): scores, 0 to 1, and the verifier's logits as one score, by the sum of their log-odds
     (`WEIGHT`, `EVEN`)."""
-    return logistic(logit(scores) + WEIGHT * (logits - EVEN))
+    odds = logit(scores) + WEIGHT * (logits - EVEN)
+    return logistic(np.asarray(odds, np.float32))

@@ -89,11 +89,12 @@ def _parse(shape: Shape, content: bytes) -> Any:
 
 
 def _places(value: Any) -> Iterator[tuple[Any, Any]]:
-    """Every place in a document: what holds it, and its key or number there."""
+    """Every place in a document: what holds it, and its key or number there; none in a document that is one value."""
+    if not isinstance(value, (dict, list)):
+        return
     for key in list(value) if isinstance(value, dict) else range(len(value)):
         yield value, key
-        if isinstance(value[key], (dict, list)):
-            yield from _places(value[key])
+        yield from _places(value[key])
 
 
 def _write(shape: Shape, document: Any) -> bytes:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from .changes import inputs
+from .changes import documents, inputs
 from .engines import SLOW_S
 from .scratch import feed
 from .targets import CORPUS, TARGETS, seeds
@@ -46,6 +46,12 @@ def test_what_hypothesis_makes_of_it(name):
 def test_changed_texts_are_taken_or_refused(data):
     name = data.draw(st.sampled_from([name for name, target in TARGETS.items() if target.shape != "bytes"]))
     feed(TARGETS[name].run, data.draw(inputs(TARGETS[name], seeds(name))))
+
+
+@settings(max_examples=5)
+@given(documents("json", [b"8"]))
+def test_a_kept_document_that_is_one_value_has_nothing_to_change(content):
+    assert content == b"8"
 
 
 def test_a_fault_is_no_refusal():

@@ -72,8 +72,9 @@ def run(args: argparse.Namespace) -> None:
     start = None if args.start is None else Path(args.start)
     settings = RegionTraining(precision=args.precision, start=start, reader=args.reader).of_steps(args.steps)
     settings = replace(settings, verifier_steps=round(VERIFIER_STEPS * args.steps))
-    pictures = read_pictures(data, LeftOut(), args.seed, args.jobs, parts, say)
+    # Before pictures are composed, which takes minutes: a reader that does not serve is told at once.
     reader_of, frames = _readers(args, data), read_divers(data)
+    pictures = read_pictures(data, LeftOut(), args.seed, args.jobs, parts, say)
     folds: list[tuple[DiverMethod, list[DiverFrame]]] = []
     for fold in args.fold or range(FOLDS):
         file = _selector(pictures, parts, fold, args.seed, settings)

@@ -117,9 +117,9 @@ def test_each_fold_is_read_by_a_net_that_has_not_seen_its_dives(monkeypatch, tmp
     assert without == [{dive for dive in DIVES if dives.fold_of_dive(dive) == fold} for fold in range(5)]
 
 
-def test_a_pool_needs_a_net_to_stand_beside(monkeypatch, tmp_path, data, pictures, capsys):
+def test_a_pool_needs_a_net_to_stand_beside(monkeypatch, tmp_path, data, capsys):
     pytest.importorskip("torch")
-    monkeypatch.setattr(dives, "read_pictures", lambda *_: pictures)
+    monkeypatch.setattr(dives, "read_pictures", lambda *_: pytest.fail("pictures were composed"))
     arguments = ["--data", str(data), "--parts", str(tmp_path), "--reader", "cnn", "--model", "svm"]
     assert dives.main([*arguments, "--pool", str(tmp_path)]) == 2
     assert "svm: is no net; --pool trains a larger net" in capsys.readouterr().err

@@ -28,12 +28,14 @@ def write_card(
     pictures: Pictures,
     seconds: int | None,
     *,
+    start: str | None,
+    reader: str,
     keeps_classical: bool,
 ) -> None:
     """Write the card of the selector's file `out` beside it.
 
-    seconds: of the training, None where unknown. keeps_classical: the classical choice is that of the file from which
-    the nets went on.
+    seconds: of the training, None where unknown. start, reader: digests of the files that the nets went on from, read
+    before the training. keeps_classical: the classical choice is that of the file from which the nets went on.
     """
     import sklearn
     import torch
@@ -57,8 +59,8 @@ def write_card(
         "the sequences of frames/subhi, webcam/val, hands/val",
         "licences": "pictures of public repositories, most without a stated licence; no picture is part of the package",
         "limits": "real divers are of few dives, their gloves of fewer; most water and darkness is composed",
-        "nets_went_on_from_the_selector_of_sha256": settings.start_digest(),
-        "verifier_went_on_from_the_larger_net_of_sha256": settings.reader_digest(),
+        "nets_went_on_from_the_selector_of_sha256": start,
+        "verifier_went_on_from_the_larger_net_of_sha256": reader,
         "classical_trees": "of that selector" if keeps_classical else "fitted with it",
         "steps": {
             "locator": settings.locator_steps,

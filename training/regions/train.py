@@ -53,12 +53,8 @@ def train_regions(
     """
     need_torch()
     settings, without = settings or RegionTraining(), without or LeftOut()
-    told = {
-        CARD_KEY: without.to_card(),
-        "settings": repr(settings),
-        "start": settings.start_digest(),
-        "reader": settings.reader_digest(),
-    }
+    start, reader = settings.start_digest(), settings.reader_digest()
+    told = {CARD_KEY: without.to_card(), "settings": repr(settings), "start": start, "reader": reader}
     folder = checkpoint_folder(out, {"seed": seed, **told})
     with SpentTime(folder) as spent:
         progress = spent.kept_by(progress)
@@ -71,7 +67,10 @@ def train_regions(
             classical = _classical(data, pictures, without, seed)
         write_selector(classical, learned, out)
         write_card(
-            out, seed, without, settings, pictures, spent.whole_seconds, keeps_classical=keeps_classical
+            *(out, seed, without, settings, pictures, spent.whole_seconds),
+            start=start,
+            reader=reader,
+            keeps_classical=keeps_classical,
         )
 
 
